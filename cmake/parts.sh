@@ -28,6 +28,7 @@ failures() {
 # How many cases of GoogleTest the last run had, and which it skipped.
 cases() {
   local log=build/Testing/Temporary/LastTest.log
+  [ -e "$log" ] || return 0
   printf 'cases of GoogleTest: %d passed, %d skipped\n' "$(grep -c '^\[       OK \]' "$log")" \
     "$(grep -c '^\[  SKIPPED \] .* ms)$' "$log")"
   sed -n 's/^\[  SKIPPED \] \(.*\) ([0-9]* ms)$/  skipped: \1/p' "$log"

@@ -20,6 +20,7 @@
 #include "base/contract.h"
 #include "base/log.h"
 #include "base/log_format.h"
+#include "base/repeat.h"
 #include "builder/input_files.h"
 #include "cmd/commands.h"
 #include "cmd/find_models.h"
@@ -62,6 +63,7 @@ struct ServeCommand {
   uint64_t block_cache = 0;
   InPlaceOptions in_place;
   std::chrono::milliseconds store_refresh{60'000};
+  std::chrono::milliseconds model_refresh{2'000};
   std::filesystem::path certificate;
   std::filesystem::path key;
   LogFormat log_format = LogFormat::kText;
@@ -296,6 +298,8 @@ Status serve(ServeCommand command) {
     (*service)->models_changed();
     if (published) (*server)->models_changed();
   });
+  const std::jthread watch(
+      [&](const std::stop_token& stop) { repeat(stop, command.model_refresh, [&] { models.look_for_replaced(); }); });
   remove_abandoned(command.cache);
   ScanBuilds builds(models, make_program_builder(command.cache, command.build_threads), command.previews);
   for (const std::filesystem::path& scan : paths->scans) SURFCAST_EXPECTS(builds.add(scan));  // sort_paths saw to it
@@ -379,6 +383,9 @@ void add_serve_command(CLI::App& app, Status& outcome) {
               "Before folders in stores are listed again, and open models are looked after (default 60). More: new and "
               "replaced "
               "models are seen later; less: requests");
+  add_seconds(*sub, "model-refresh", command->model_refresh,
+              "Before the files of models that views show are looked at again (default 2). More: views at rest show a "
+              "replaced file later; less: requests of the file system");
   add_server_flags(*sub, command->service, command->renderer, command->server, command->viewer_limits);
   sub->add_option("--log-format", command->log_format, "Lines of the log: text or json (default text)")
       ->envname(protocol::environment_name("log-format"))

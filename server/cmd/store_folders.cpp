@@ -1,11 +1,10 @@
 #include "cmd/store_folders.h"
 
-#include <condition_variable>
 #include <filesystem>
 #include <map>
-#include <mutex>
 
 #include "base/log.h"
+#include "base/repeat.h"
 #include "object_store/object_url.h"
 
 namespace surfcast::cmd {
@@ -37,18 +36,13 @@ void StoreFolders::look_for_replaced(const std::stop_token& stop) const {
 }
 
 void StoreFolders::keep_listing(const std::stop_token& stop, std::chrono::milliseconds interval) {
-  std::mutex mutex;
-  std::condition_variable_any wake;  // by the stop token alone
-  std::unique_lock lock(mutex);
   bool failed = false;
-  for (;;) {
-    wake.wait_for(lock, stop, interval, [] { return false; });
-    if (stop.stop_requested()) return;
+  repeat(stop, interval, [&] {
     const Status listed = list();
     if (!listed && !failed) spdlog::warn("{}; the models found there before are kept", listed.error().message);
     failed = !listed;
     look_for_replaced(stop);
-  }
+  });
 }
 
 }  // namespace surfcast::cmd

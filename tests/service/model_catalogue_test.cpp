@@ -109,6 +109,35 @@ TEST_F(ModelCatalogueTest, AFileIsOpenedOnceAndAgainWhenItIsReplaced) {
   EXPECT_EQ((*first)->info().surfels, 3u);  // the old model remains usable while it is held
 }
 
+TEST_F(ModelCatalogueTest, AFileThatViewsShowHasAnotherEditionWhenItIsReplaced) {
+  const fs::path path = write("a.surf", 3);
+  write("b.surf", 3);
+  ModelCatalogue catalogue({}, {folder_});
+  int changes = 0;
+  catalogue.on_change([&](bool published) { changes += published ? 1 : 0; });
+  const uint64_t first = catalogue.edition("a");
+  const uint64_t beside = catalogue.edition("b");
+  const uint64_t joined = catalogue.edition("a+b");
+  EXPECT_GT(first, 0U);
+  catalogue.look_for_replaced();
+  EXPECT_EQ(changes, 0);
+  EXPECT_EQ(catalogue.edition("a"), first);
+
+  fs::last_write_time(path, fs::last_write_time(path) - std::chrono::hours(1));  // an older file takes its place
+  catalogue.look_for_replaced();
+  EXPECT_EQ(changes, 1);
+  EXPECT_GT(catalogue.edition("a"), first);
+  EXPECT_EQ(catalogue.edition("b"), beside);
+  EXPECT_GT(catalogue.edition("a+b"), joined);
+
+  const uint64_t second = catalogue.edition("a");
+  fs::remove(path);  // as between a removal and the next file
+  catalogue.look_for_replaced();
+  EXPECT_EQ(changes, 1);
+  EXPECT_EQ(catalogue.edition("a"), second);
+  EXPECT_EQ(catalogue.edition("none"), 0U);
+}
+
 TEST_F(ModelCatalogueTest, NamesThatAreNoneAreNotFoundAndNeverLeaveTheFolder) {
   write("a.surf", 3);
   const ModelCatalogue catalogue({}, {folder_ / "other"});
@@ -224,9 +253,10 @@ TEST_F(ModelCatalogueTest, AJoinWaitsForItsScans) {
   EXPECT_TRUE(catalogue.awaited("a+scan"));
   EXPECT_EQ(catalogue.open("a+scan").error().kind, ErrorKind::kUnavailable);
   const auto built = std::make_shared<const model::ModelFile>(*model::ModelFile::open(write("other/scan.surf", 4)));
+  const uint64_t before = catalogue.edition("a+scan");
   catalogue.publish("scan", {built, true});
   EXPECT_FALSE(catalogue.awaited("a+scan"));
-  EXPECT_EQ(catalogue.edition("a+scan"), 1U);
+  EXPECT_EQ(catalogue.edition("a+scan"), before + 1);
   const auto preview = catalogue.open_edition("a+scan", 0);
   ASSERT_TRUE(preview);
   EXPECT_TRUE(preview->preview);

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import shutil
+from pathlib import Path
 
 import pytest
 
 import surfcast
 from surfcast import aio
-from surfcast.testing import RunningServer
+from surfcast.testing import RunningServer, server
 
 SIZE = (160, 120)
 
@@ -25,6 +28,22 @@ def test_a_view_at_rest_is_the_picture(field: surfcast.Model, camera: surfcast.C
         frame = view.wait_converged(timeout=60)
         assert frame.update == 1
         assert frame.picture.data == field.render(view.camera, resolution=SIZE, color_by="intensity").data
+
+
+def test_a_view_at_rest_shows_the_file_that_replaces_its_model(
+    models: Path, camera: surfcast.Camera, tmp_path: Path
+) -> None:
+    shutil.copy(models / "degrees.surf", tmp_path / "field.surf")
+    shutil.copy(models / "field.surf", tmp_path / "later.surf.part")
+    os.utime(tmp_path / "field.surf", (1e9, 1e9))
+    with server(tmp_path, arguments=["--model-refresh", "0.1"]) as started, started.connect() as connected:
+        with connected["field"].view(camera, resolution=SIZE) as view:
+            before = view.wait_converged(timeout=60)
+            (tmp_path / "later.surf.part").rename(tmp_path / "field.surf")
+            after = next(frame for frame in view if frame.picture.converged and frame.number > before.number)
+            assert after.update == before.update
+            assert after.picture.data != before.picture.data
+            assert after.picture.data == connected["field"].render(camera, resolution=SIZE).data
 
 
 def test_the_newest_frame_wins(field: surfcast.Model, camera: surfcast.Camera) -> None:

@@ -286,9 +286,48 @@ uint64_t ModelCatalogue::edition(const std::string& served_name) const {
   for (const std::string& member : members) sum += edition(member);
   if (!members.empty()) return sum;
   const std::string name = name_alone(served_name);
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto scan = scans_.find(name); scan != scans_.end()) return scan->second.edition;
+    if (const auto file = shown_.find(name); file != shown_.end()) return file->second.edition;
+  }
+  return edition_of_file(name);
+}
+
+/// The first edition of a file on disk. None for other models: those of stores are watched by who lists the stores.
+uint64_t ModelCatalogue::edition_of_file(const std::string& name) const {
+  const fs::path path = find(name);
+  if (path.empty() || object_store::is_object_url(path.string())) return 0;
+  std::error_code code;
+  const fs::file_time_type written = fs::last_write_time(path, code);
+  if (code) return 0;
   const std::lock_guard lock(mutex_);
-  const auto found = scans_.find(name);
-  return found == scans_.end() ? 0 : found->second.edition;
+  return shown_.try_emplace(name, Shown{path, written}).first->second.edition;
+}
+
+void ModelCatalogue::look_for_replaced() {
+  std::map<std::string, Shown> shown;
+  {
+    const std::lock_guard lock(mutex_);
+    shown = shown_;
+  }
+  // Without the lock, because a file system may take its time.
+  std::vector<std::pair<std::string, fs::file_time_type>> replaced;
+  for (const auto& [name, file] : shown) {
+    std::error_code code;
+    const fs::file_time_type written = fs::last_write_time(file.path, code);
+    if (!code && written != file.written) replaced.emplace_back(name, written);
+  }
+  if (replaced.empty()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [name, written] : replaced) {
+      Shown& file = shown_[name];
+      file.written = written;
+      ++file.edition;
+    }
+  }
+  changed_(true);
 }
 
 Result<ModelCatalogue::Edition> ModelCatalogue::open_edition(const std::string& name, uint64_t edition) const {

@@ -45,7 +45,8 @@ class ModelCatalogue : public ModelSource {
     bool preview = false;
     std::shared_ptr<const void> in_use{};  ///< as in NamedModel
   };
-  /// Called after every change of a scan, from the thread that changed it. `published`: there is another edition.
+  /// Called after every change of a scan or of a file that views show, from the thread that changed or noticed it.
+  /// `published`: there is another edition.
   using Changed = std::function<void(bool published)>;
 
   /// Set it before the first scan is added.
@@ -66,6 +67,9 @@ class ModelCatalogue : public ModelSource {
   /// The models of stores that are open: somebody has to find out now and then whether they have been replaced.
   [[nodiscard]] std::vector<std::shared_ptr<const model::ModelFile>> opened_in_stores() const;
 
+  /// Whether files that views show have been replaced: then they have another edition, and `on_change` is called.
+  void look_for_replaced();
+
   /// Closes the files that are not there any more. They stay open for whoever still uses them.
   void close_removed() const;
 
@@ -75,7 +79,8 @@ class ModelCatalogue : public ModelSource {
   [[nodiscard]] uint64_t edition(const std::string& served_name) const override;
   /// True for models of stores and for scans in place, by what is known of the folders since they were last read.
   [[nodiscard]] bool remote(const std::string& served_name) const override;
-  /// The edition of a scan's model, or the newest one if it is 0 or gone. Models are joined in their newest editions.
+  /// The edition of a scan's model, or the newest one if it is 0 or gone. Files, and models that are joined, have their
+  /// newest edition only.
   [[nodiscard]] Result<Edition> open_edition(const std::string& name, uint64_t edition) const;
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override;
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override;
@@ -92,6 +97,13 @@ class ModelCatalogue : public ModelSource {
     std::vector<std::shared_ptr<const model::ModelFile>> members;
     std::shared_ptr<const model::ModelFile> model;
     uint64_t used = 0;  ///< the higher, the later
+  };
+
+  /// A file that views show, as it was when its edition was asked for or looked for last.
+  struct Shown {
+    std::filesystem::path path;
+    std::filesystem::file_time_type written;
+    uint64_t edition = 1;
   };
 
   struct Scan {
@@ -125,6 +137,7 @@ class ModelCatalogue : public ModelSource {
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> join(
       const std::vector<std::string>& names, std::vector<std::shared_ptr<const model::ModelFile>> models) const;
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open_file(const std::string& name) const;
+  [[nodiscard]] uint64_t edition_of_file(const std::string& name) const;
 
   Changed changed_ = [](bool) {};
   std::vector<NamedModel> files_;
@@ -133,6 +146,7 @@ class ModelCatalogue : public ModelSource {
   mutable std::mutex mutex_;
   std::map<std::string, Scan> scans_;                          ///< by name
   mutable std::map<std::string, Opened> opened_;               ///< by name
+  mutable std::map<std::string, Shown> shown_;                 ///< by name
   mutable std::map<std::vector<std::string>, Joined> joined_;  ///< by the names of the members
   mutable uint64_t joins_ = 0;                                 ///< uses of them
   mutable std::mutex listing_mutex_;                           ///< guards what follows; nothing else is locked under it
