@@ -55,6 +55,12 @@ struct InputEllipsoids {
   model::EllipsoidCounts counts;
 };
 
+/// What became of a model to which scans were added.
+struct AppendedBlocks {
+  uint64_t surfels_before = 0;
+  uint64_t blocks_copied = 0;  ///< byte for byte
+};
+
 /// The result and the cost of a build.
 struct BuildReport {
   estimation::SurfelReport scan;
@@ -63,9 +69,10 @@ struct BuildReport {
   std::vector<TransformedInput> transformed{};  ///< the inputs that were brought into the system of the model
   model::Georeference georeference{};           ///< of the model
   std::optional<simplify::SimplifyReport> simplified{};
-  uint64_t points_in_scans = 0;      ///< beyond BuildOptions::sample too
-  uint64_t samples = 0;              ///< of the volumes
-  std::vector<InputField> fields{};  ///< scans that became volumes
+  std::optional<AppendedBlocks> appended{};  ///< of append_to_model
+  uint64_t points_in_scans = 0;              ///< beyond BuildOptions::sample too
+  uint64_t samples = 0;                      ///< of the volumes
+  std::vector<InputField> fields{};          ///< scans that became volumes
   uint64_t surfels = 0;
   uint64_t gaussians = 0;
   std::vector<InputEllipsoids> ellipsoids;  ///< of the inputs that have some

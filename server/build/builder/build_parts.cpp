@@ -64,6 +64,9 @@ std::vector<T> kept_values(std::vector<T> values, const std::vector<uint8_t>& ke
 BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan)
     : frame_(std::make_unique<const BuildFrame>(inputs, std::move(plan))) {}
 
+BuildParts::BuildParts(std::unique_ptr<const BuildFrame> frame, PartStore store)
+    : frame_(std::move(frame)), store_(std::move(store)) {}
+
 Result<BuildParts> BuildParts::gather(const BuildInputs& inputs, const Division& division,
                                       const std::filesystem::path& target, StageClock& clock,
                                       estimation::SurfelReport& report) {

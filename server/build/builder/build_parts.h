@@ -26,6 +26,9 @@ class BuildParts {
                                    const std::filesystem::path& target, StageClock& clock,
                                    estimation::SurfelReport& report);
 
+  /// Parts whose points were distributed already.
+  BuildParts(std::unique_ptr<const BuildFrame> frame, PartStore store);
+
   [[nodiscard]] size_t size() const { return frame_->parts.size(); }
   [[nodiscard]] const Part& plan(size_t part) const { return frame_->parts[part]; }
   [[nodiscard]] const geometry::RootCube& root() const { return frame_->root; }

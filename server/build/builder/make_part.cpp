@@ -60,6 +60,22 @@ BuildFrame::BuildFrame(const BuildInputs& inputs, std::vector<Part> plan)
   const bool exact = std::all_of(inputs.schemas().begin(), inputs.schemas().end(),
                                  [](const scan::ScanSchema& input) { return input.surface_step.has_value(); });
   scene = {bounds, inputs.schema().z_up, inputs.schema().normals && !exact};
+  add_inputs(inputs);
+}
+
+BuildFrame::BuildFrame(const BuildInputs& added, std::span<const InputName> lattices, const geometry::RootCube& whole,
+                       const geometry::Box& all, bool sides, std::vector<Part> plan)
+    : bounds(all), root(whole), parts(std::move(plan)), finder(parts, root), oriented(sides) {
+  scene = {bounds, added.schema().z_up, true};
+  for (const Part& part : parts) points += part.count;
+  for (const InputName& lattice : lattices) names.push_back(lattice);
+  sensors.resize(names.size());
+  surface_steps.resize(names.size());
+  exact_radii.resize(names.size());
+  add_inputs(added);
+}
+
+void BuildFrame::add_inputs(const BuildInputs& inputs) {
   for (const scan::ScanSchema& input : inputs.schemas()) {
     sensors.push_back(input.sensor);
     surface_steps.push_back(input.surface_step);
@@ -96,6 +112,10 @@ SceneDecisions SceneEvidence::decide(const BuildFrame& frame, estimation::Radius
   SceneDecisions decisions;
   decisions.signs = estimation::resolve_signs(signs_, frame.scene);
   decisions.signs.oriented = decisions.signs.oriented && !frame.two_sided;
+  if (frame.oriented) {
+    decisions.signs.oriented = *frame.oriented;
+    decisions.signs.face_up = !*frame.oriented && frame.scene.z_up;
+  }
   report.oriented = decisions.signs.oriented;
   for (size_t input = 0; input < comparisons_.size(); ++input) {
     decisions.radii.push_back(estimation::decide_radii(comparisons_[input], policy_of(frame, input, radii)));

@@ -19,6 +19,10 @@ namespace surfcast::builder {
 /// What all parts of a build share.
 struct BuildFrame {
   BuildFrame(const BuildInputs& inputs, std::vector<Part> plan);
+  /// Parts of a model that gets `added`; the others stay as they are. The model comes before the inputs, one entry for
+  /// each lattice of `lattices`, and its surfaces are `oriented` or not.
+  BuildFrame(const BuildInputs& added, std::span<const InputName> lattices, const geometry::RootCube& whole,
+             const geometry::Box& all, bool oriented, std::vector<Part> plan);
 
   estimation::Scene scene;
   geometry::Box bounds;
@@ -31,6 +35,10 @@ struct BuildFrame {
   std::vector<InputName> names;
   std::vector<Part> parts;
   PartFinder finder;
+  std::optional<bool> oriented{};  ///< known before; none: to be decided
+
+ private:
+  void add_inputs(const BuildInputs& inputs);
 };
 
 /// The surfels of a part, and what it tells about the scene.

@@ -2,19 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <iterator>
+#include <limits>
 
 #include "geometry/zone.h"
 
 namespace surfcast::builder {
 namespace {
-
-geometry::Box box_of(const ldc::OctreeKey& key, const geometry::RootCube& root) {
-  const double side = std::ldexp(root.side, -int{key.depth});
-  geometry::Box box;
-  box.min = root.min + side * glm::dvec3(key.x, key.y, key.z);
-  box.max = box.min + side;
-  return box;
-}
 
 geometry::Box grown(const geometry::Box& box, double factor) {
   const glm::dvec3 margin = factor * box.size();
@@ -40,16 +35,28 @@ bool any_contains(const std::vector<geometry::Box>& boxes, const glm::dvec3& p) 
 
 }  // namespace
 
+geometry::Box cell_box(const ldc::OctreeKey& key, const geometry::RootCube& root) {
+  const double side = std::ldexp(root.side, -int{key.depth});
+  geometry::Box box;
+  box.min = root.min + side * glm::dvec3(key.x, key.y, key.z);
+  box.max = box.min + side;
+  return box;
+}
+
 PartFinder::PartFinder(std::span<const Part> parts, const geometry::RootCube& root) : root_(root) {
+  whole_ = parts.size() == 1 && parts[0].cells[0].depth == 0;
   for (const Part& part : parts) {
-    ends_.push_back(part.end_code);
     std::vector<geometry::Box>& cells = cells_.emplace_back();
     std::vector<geometry::Box>& halos = with_halo_.emplace_back();
     for (const ldc::OctreeKey& key : part.cells) {
-      cells.push_back(box_of(key, root));
+      const int shift = 3 * (geometry::kMortonDepth - int{key.depth});
+      const uint64_t first = geometry::interleave({key.x, key.y, key.z}) << shift;
+      ranges_.push_back({first, first + (uint64_t{1} << shift), static_cast<uint32_t>(cells_.size() - 1)});
+      cells.push_back(cell_box(key, root));
       halos.push_back(grown(cells.back(), halo_of(part)));
     }
   }
+  std::ranges::sort(ranges_, {}, &CodeRange::first);
   fill_bins();
 }
 
@@ -59,7 +66,7 @@ void PartFinder::fill_bins() {
   const auto bin_at = [this](const glm::dvec3& p) {
     return glm::ivec3(glm::clamp(glm::floor((p - root_.min) / root_.side * kBins), 0.0, kBins - 1));
   };
-  for (uint32_t part = 0; ends_.size() > 1 && part < ends_.size(); ++part) {
+  for (uint32_t part = 0; !whole_ && part < cells_.size(); ++part) {
     for (const geometry::Box& halo : with_halo_[part]) {
       const glm::ivec3 low = bin_at(halo.min);
       const glm::ivec3 high = bin_at(halo.max);
@@ -82,7 +89,22 @@ void PartFinder::fill_bins() {
 }
 
 uint32_t PartFinder::part_of(uint64_t code) const {
-  return static_cast<uint32_t>(std::upper_bound(ends_.begin(), ends_.end(), code) - ends_.begin());
+  const auto after = std::ranges::upper_bound(ranges_, code, {}, &CodeRange::first);
+  if (after == ranges_.begin() || code >= std::prev(after)->end) return kNoPart;
+  return std::prev(after)->part;
+}
+
+uint32_t PartFinder::nearest_part(const glm::dvec3& point) const {
+  uint32_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (uint32_t part = 0; part < cells_.size(); ++part) {
+    for (const geometry::Box& cell : cells_[part]) {
+      const double distance = glm::distance(point, glm::clamp(point, cell.min, cell.max));
+      if (distance < least) nearest = part;
+      least = std::min(least, distance);
+    }
+  }
+  return nearest;
 }
 
 bool PartFinder::is_near(uint32_t part, const glm::dvec3& point) const {
@@ -95,7 +117,7 @@ bool PartFinder::may_need(uint32_t part, const geometry::Box& box) const {
 }
 
 estimation::SitePlace PartFinder::place(uint32_t part, const glm::dvec3& point) const {
-  if (ends_.size() == 1) return {};
+  if (whole_) return {};
   estimation::SitePlace place;
   place.own = part_of(geometry::morton_code(root_, point)) == part;
   // Neighbouring parts see this part only as far as their halo extends. In the outer half of a halo, sites have too few

@@ -16,16 +16,31 @@ namespace surfcast::builder {
 /// points, so that it holds the neighbours of every point.
 inline constexpr double kHalo = 1.0 / 16;
 
+geometry::Box cell_box(const ldc::OctreeKey& key, const geometry::RootCube& root);
+
 /// Finds the parts of a point: the one whose cell contains it, and those whose halo contains it.
 class PartFinder {
  public:
   PartFinder(std::span<const Part> parts, const geometry::RootCube& root);
+
+  /// The part whose cells contain a Morton code; kNoPart if parts do not hold the whole cube.
+  [[nodiscard]] uint32_t part_of(uint64_t code) const;
+  static constexpr uint32_t kNoPart = UINT32_MAX;
+
+  /// The part with the cell that is nearest to a point.
+  [[nodiscard]] uint32_t nearest_part(const glm::dvec3& point) const;
 
   /// Calls `use(part)` for the part that contains the point, then for each part whose halo contains it.
   template <typename Use>
   void for_each_part(const glm::dvec3& point, uint64_t code, const Use& use) const {
     const uint32_t own = part_of(code);
     use(own);
+    for_each_halo(point, code, own, use);
+  }
+
+  /// Calls `use(part)` for each part but `own` whose halo contains the point.
+  template <typename Use>
+  void for_each_halo(const glm::dvec3& point, uint64_t code, uint32_t own, const Use& use) const {
     const uint64_t bin = code >> kBinShift;
     for (uint32_t i = first_of_bin_[bin]; i < first_of_bin_[bin + 1]; ++i) {
       const uint32_t part = near_bin_[i];
@@ -44,12 +59,19 @@ class PartFinder {
   static constexpr int kBinDepth = 6;
   static constexpr int kBinShift = 3 * (geometry::kMortonDepth - kBinDepth);
 
+  /// The Morton codes of a cell of a part.
+  struct CodeRange {
+    uint64_t first = 0;
+    uint64_t end = 0;
+    uint32_t part = 0;
+  };
+
   void fill_bins();
-  [[nodiscard]] uint32_t part_of(uint64_t code) const;
   [[nodiscard]] bool is_near(uint32_t part, const glm::dvec3& point) const;
 
   geometry::RootCube root_;
-  std::vector<uint64_t> ends_;                         ///< ends of the parts' Morton codes
+  bool whole_ = false;                                 ///< the only part is the whole cube
+  std::vector<CodeRange> ranges_;                      ///< of all cells, ascending
   std::vector<std::vector<geometry::Box>> cells_;      ///< for each part
   std::vector<std::vector<geometry::Box>> with_halo_;  ///< the cells of each part, extended by the halo
   std::vector<uint32_t> first_of_bin_;

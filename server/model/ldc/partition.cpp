@@ -14,6 +14,7 @@
 
 #include "base/contract.h"
 #include "ldc/lattice.h"
+#include "ldc/nearest_code.h"
 
 namespace surfcast::ldc {
 namespace {
@@ -65,9 +66,12 @@ std::vector<Member> collect_members(const surfel::SurfelCloud& cloud, size_t cor
   return members;
 }
 
-void sort_by_code(const surfel::SurfelCloud& cloud, const geometry::RootCube& root, std::vector<Member>& members) {
+/// Surfels that are read from a model may lie beyond the cell of the region, by as much as their positions were
+/// rounded.
+void sort_by_code(const surfel::SurfelCloud& cloud, const Region& region, std::vector<Member>& members) {
   oneapi::tbb::parallel_for(size_t{0}, members.size(), [&](size_t i) {
-    members[i].code = geometry::morton_code(root, cloud.positions[members[i].surfel]);
+    const uint64_t code = geometry::morton_code(region.root, cloud.positions[members[i].surfel]);
+    members[i].code = nearest_code(region.cell, code);
   });
   oneapi::tbb::parallel_sort(members);
 }
@@ -137,7 +141,7 @@ class Splitter {
   Partition partition() && {
     members_ = collect_members(cloud_, region_.core, grids_);
     SURFCAST_EXPECTS(members_.size() == region_.core);
-    sort_by_code(cloud_, region_.root, members_);
+    sort_by_code(cloud_, region_, members_);
     std::optional<Cell> cell;
     Partition result;
     if (region_.whole) cell = make_cell(members_, region_.cell);

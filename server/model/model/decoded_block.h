@@ -38,6 +38,7 @@ struct StoredBlock {
   glm::i64vec3 origin{0};  ///< lattice index of the lowest corner of its bounds
   glm::u32vec3 extent{0};  ///< lattice index of the highest corner, relative to `origin`
   uint32_t items = 0;      ///< surfels, or items of another kind
+  uint32_t scatter = 0;    ///< how many of them lie on no surface
 };
 
 /// The scalar attributes to decode with a block. Decoding all of them takes about as long as decoding everything that

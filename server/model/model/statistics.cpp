@@ -57,6 +57,26 @@ AttributeStatistics::AttributeStatistics(const surfel::SurfelCloud& cloud, std::
   }
 }
 
+AttributeStatistics::AttributeStatistics(std::span<const std::string> names, std::span<const AttributeRange> ranges,
+                                         std::span<const ClassCount> classes) {
+  for (const std::string& name : names) {
+    Extremes& extremes = extremes_.emplace_back();
+    const auto range = std::ranges::find(ranges, name, &AttributeRange::attribute);
+    if (range != ranges.end()) extremes = {range->smallest, range->largest};
+  }
+  for (const ClassCount& count : classes) classes_.at(count.code) = count.surfels;
+}
+
+void AttributeStatistics::take_classes(const AttributeStatistics& of) {
+  for (size_t code = 0; code < classes_.size(); ++code) classes_[code] -= std::min(classes_[code], of.classes_[code]);
+}
+
+void AttributeStatistics::add_intensities(const AttributeStatistics& sample, double times) {
+  for (const auto& [bucket, count] : sample.intensities_) {
+    intensities_[bucket] += static_cast<uint64_t>(std::llround(times * static_cast<double>(count)));
+  }
+}
+
 void AttributeStatistics::add(const AttributeStatistics& other) {
   extremes_.resize(std::max(extremes_.size(), other.extremes_.size()));
   for (size_t i = 0; i < other.extremes_.size(); ++i) {

@@ -34,6 +34,16 @@ class AttributeStatistics {
   AttributeStatistics() = default;
   AttributeStatistics(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members);
 
+  /// What the tables of a model say about the surfels of its leaves: all but the frequencies of intensities. `names`
+  /// are the names of all attributes, in order.
+  AttributeStatistics(std::span<const std::string> names, std::span<const AttributeRange> ranges,
+                      std::span<const ClassCount> classes);
+
+  /// Takes away the classes of surfels that are among these.
+  void take_classes(const AttributeStatistics& of);
+  /// Adds the intensities of a sample that stands for so many times its surfels.
+  void add_intensities(const AttributeStatistics& sample, double times);
+
   /// Adds the statistics of other surfels with the same attributes.
   void add(const AttributeStatistics& other);
 
