@@ -21,6 +21,7 @@
 
 #include "base/atomic_file.h"
 #include "base/log.h"
+#include "builder/append_model.h"
 #include "builder/build_model.h"
 #include "builder/grid_input.h"
 #include "builder/memory_budget.h"
@@ -42,6 +43,7 @@ namespace {
 struct BuildCommand {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
+  std::filesystem::path into;  ///< a model that the inputs are added to, instead
   ModelFlags model;
   std::optional<size_t> parts;
   estimation::RadiusPolicy radii = estimation::RadiusPolicy::kAuto;
@@ -247,7 +249,7 @@ nlohmann::ordered_json to_json(const builder::InputEllipsoids& input) {
 std::string to_json(const BuildCommand& command, const builder::BuildReport& report,
                     const std::vector<isosurface::InputSurfaces>& surfaces) {
   nlohmann::ordered_json json{
-      {"output", command.output.string()},
+      {"output", (command.into.empty() ? command.output : command.into).string()},
       {"points_read", report.scan.points_read},
       {"points_in_scans", report.points_in_scans},
       {"samples", report.samples},
@@ -285,6 +287,10 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
     json["coordinate_system"] = json_of(report.georeference);
     json["transformed"] = to_json(report.transformed);
   }
+  if (report.appended) {
+    json["appended"] = {{"surfels_before", report.appended->surfels_before},
+                        {"blocks_copied", report.appended->blocks_copied}};
+  }
   if (command.simplify && report.simplified) json["simplify"] = to_json(*command.simplify, *report.simplified);
   for (const std::filesystem::path& input : command.inputs) json["inputs"].push_back(input.string());
   // File names need not be UTF-8.
@@ -298,6 +304,43 @@ Status check_surfaces(const BuildCommand& command) {
   };
   if (command.surfaces.empty() || std::any_of(command.inputs.begin(), command.inputs.end(), may_have)) return {};
   return fail(ErrorKind::kInvalidInput, command.inputs[0].string() + ": --iso needs a volume, and no input is one");
+}
+
+Result<builder::BuildReport> make_model(const BuildCommand& command, isosurface::SurfaceInputs& surfaces,
+                                        const builder::BuildProgress& progress) {
+  builder::BuildOptions options;
+  options.precision = command.model.precision;
+  options.z_up = command.model.z_up();
+  options.memory = builder::parse_memory_size(command.model.memory);
+  options.parts = command.parts;
+  options.sample = command.sample;
+  options.selection = command.selection;
+  options.radii = command.radii;
+  options.kind = command.kind;
+  options.field = command.field;
+  options.tensor_order = command.tensor_order;
+  options.meshes = command.meshes;
+  options.systems = command.systems;
+  options.simplify = command.simplify;
+  if (!command.surfaces.empty()) options.open = std::bind_front(&isosurface::SurfaceInputs::open, &surfaces);
+  return builder::build_model(command.inputs, command.output, options, progress);
+}
+
+Result<builder::BuildReport> append_into(const BuildCommand& command, const builder::BuildProgress& progress) {
+  builder::AppendOptions options;
+  options.precision = command.model.precision;
+  options.memory = builder::parse_memory_size(command.model.memory);
+  options.radii = command.radii;
+  options.selection = command.selection;
+  options.systems = command.systems;
+  return builder::append_to_model(command.inputs, command.into, options, progress);
+}
+
+/// How much of a model was copied to which the inputs were added.
+std::string append_lines(const builder::BuildReport& report) {
+  if (!report.appended) return {};
+  return fmt::format("added to {} surfels, {} of {} blocks are copies\n", report.appended->surfels_before,
+                     report.appended->blocks_copied, report.blocks);
 }
 
 Status build(BuildCommand& command) {
@@ -314,29 +357,14 @@ Status build(BuildCommand& command) {
   isosurface::SurfaceInputs surfaces(command.surfaces, command.output);
   {
     BuildProgressReport progress(command.run.style(), command.run.points_per_second());
-    builder::BuildOptions options;
-    options.precision = command.model.precision;
-    options.z_up = command.model.z_up();
-    options.memory = builder::parse_memory_size(command.model.memory);
-    options.parts = command.parts;
-    options.sample = command.sample;
-    options.selection = command.selection;
-    options.radii = command.radii;
-    options.kind = command.kind;
-    options.field = command.field;
-    options.tensor_order = command.tensor_order;
-    options.meshes = command.meshes;
-    options.systems = command.systems;
-    options.simplify = command.simplify;
-    if (!command.surfaces.empty()) options.open = std::bind_front(&isosurface::SurfaceInputs::open, &surfaces);
-    report = builder::build_model(command.inputs, command.output, options,
-                                  [&progress](const builder::BuildStep& step) { progress.note(step); });
+    const auto note = [&progress](const builder::BuildStep& step) { progress.note(step); };
+    report = command.into.empty() ? make_model(command, surfaces, note) : append_into(command, note);
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   std::cout << surface_lines(surfaces.found()) << mesh_lines(report->meshes) << field_lines(report->fields)
             << system_lines(report->transformed, report->georeference) << radii_lines(*report)
-            << simplify_lines(command, *report) << figures(*report);
+            << simplify_lines(command, *report) << append_lines(*report) << figures(*report);
   if (command.report.empty()) return {};
   return write_file_atomically(command.report, to_json(command, *report, surfaces.found()));
 }
@@ -369,7 +397,10 @@ void add_build_command(CLI::App& app, Status& outcome) {
       ->add_option("INPUT", command->inputs,
                    "Scans, regular grids, Gaussians, tensor fields or tables of ellipsoids, or folders of them")
       ->required();
-  build_command->add_option("--output", command->output, "Model file to write")->required();
+  build_command->add_option("--output", command->output, "Model file to write");
+  CLI::Option* into = build_command->add_option("--into", command->into,
+                                                "Model file that the scans are added to, instead of --output. Only the "
+                                                "blocks near them are made anew");
   add_model_flags(*build_command, command->model);
   build_command
       ->add_option("--parts", command->parts,
@@ -394,7 +425,14 @@ void add_build_command(CLI::App& app, Status& outcome) {
   add_run_flags(*build_command, command->run);
   build_command->add_flag("--background", command->background,
                           "Leave the processors to other programs, and end when the program that started this ends");
-  build_command->callback([command, &outcome] { outcome = build(*command); });
+  for (const char* other : {"--output", "--up", "--parts", "--kind", "--tensor-order", "--value", "--iso", "--simplify",
+                            "--sample", "--to-crs"}) {
+    into->excludes(build_command->get_option(other));
+  }
+  build_command->callback([command, &outcome] {
+    if (command->output.empty() && command->into.empty()) throw CLI::RequiredError("--output or --into");
+    outcome = build(*command);
+  });
 }
 
 }  // namespace surfcast::cmd

@@ -384,6 +384,35 @@ TEST_F(SurfcastdTest, JoinsSeveralScansIntoOneModel) {
   EXPECT_EQ(model["sources"], (nlohmann::json{"scan.ply", "more.xyz"}));
 }
 
+TEST_F(SurfcastdTest, AddsScansToAModel) {
+  std::ofstream(folder_ / "east.csv") << "x,y,z,red,green,blue\n10,0,0,1,2,3\n11,0,0,1,2,3\n11,1,0,1,2,3\n";
+  ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
+  const Answer added = run("build east.csv --into model.surf --report report.json");
+  ASSERT_EQ(added.exit_code, 0) << added.err;
+  EXPECT_NE(added.out.find("added to 100 surfels"), std::string::npos) << added.out;
+  EXPECT_EQ(nlohmann::json::parse(content(folder_ / "report.json"))["appended"]["surfels_before"], 100);
+  const Answer inspected = run("inspect model.surf");
+  EXPECT_NE(inspected.out.find("surfels: 103"), std::string::npos) << inspected.out;
+  EXPECT_NE(inspected.out.find("sources: scan.ply, east.csv"), std::string::npos) << inspected.out;
+}
+
+TEST_F(SurfcastdTest, WhatCannotBeAddedLeavesTheModelAsItWas) {
+  ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
+  const std::string before = content(folder_ / "model.surf");
+  std::ofstream(folder_ / "more.csv") << "x,y,z,temperature\n10,0,0,1\n11,0,0,2\n11,1,0,3\n";
+  std::ofstream(folder_ / "text.csv") << "no table\n";
+  for (const std::string arguments :
+       {"build more.csv --into model.surf", "build text.csv --into model.surf", "build none.las --into model.surf",
+        "build scan.ply --into none.surf", "build scan.ply --into model.surf --output other.surf", "build scan.ply"}) {
+    const Answer refused = run(arguments);
+    EXPECT_NE(refused.exit_code, 0) << arguments;
+    EXPECT_FALSE(refused.err.empty()) << arguments;
+  }
+  EXPECT_NE(run("build more.csv --into model.surf").err.find("more.csv: has the attribute temperature"),
+            std::string::npos);
+  EXPECT_EQ(content(folder_ / "model.surf"), before);
+}
+
 TEST_F(SurfcastdTest, InspectsAModelForPeopleAndPrograms) {
   ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
   const Answer text = run("inspect model.surf --verify");

@@ -200,6 +200,7 @@ std::vector<PartRows> rows_by_part(const scan::ScanPoints& points, const BuildFr
     frame.finder.for_each_halo(p, code, part, [&](uint32_t near) { rows[{near, false}].push_back(i); });
   }
   std::vector<PartRows> parts;
+  parts.reserve(rows.size());
   for (auto& [key, list] : rows) parts.push_back({key.first, key.second, std::move(list)});
   return parts;
 }
@@ -350,7 +351,7 @@ class AppendPass {
     std::vector<uint32_t> children;
     const auto [first, count] = inputs_.model.tree().children(block);
     for (uint32_t child = first; child < first + count; ++child) {
-      const Result<uint32_t> number = copy(child);
+      Result<uint32_t> number = copy(child);
       if (!number) return number;
       children.push_back(*number);
     }
