@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "builder/part_finder.h"
+#include "ldc/cell_codes.h"
 
 namespace surfcast::builder {
 namespace {
@@ -25,7 +26,7 @@ ldc::BlockEntry block_in(const OctreeKey& key, uint32_t parent, int level) {
   entry.key = key;
   entry.parent = parent;
   entry.level = level;
-  entry.bounds = cell_box(key, kCube);
+  entry.bounds = ldc::box_of(key, kCube);
   entry.bounds.min += 0.01;  // so that it does not touch other cells
   entry.bounds.max -= 0.01;
   entry.spacing = 0.125;  // reaches 0.5
@@ -191,8 +192,8 @@ TEST(GrowRootTest, TheCubeIsDoubledUntilItHoldsTheBox) {
   EXPECT_EQ(both->root.min, glm::dvec3(-48, 0, -16));
   EXPECT_EQ(both->former, (OctreeKey{2, 3, 0, 1}));
   const OctreeKey before = OctreeKey{}.child(5).child(2);
-  const geometry::Box place = cell_box(before, kCube);
-  const geometry::Box now = cell_box(both->key_of(before), both->root);
+  const geometry::Box place = ldc::box_of(before, kCube);
+  const geometry::Box now = ldc::box_of(both->key_of(before), both->root);
   EXPECT_EQ(now.min, place.min);
   EXPECT_EQ(now.max, place.max);
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -250,12 +249,7 @@ class Distribution {
       return own && inputs_.places.any_near({position, position}, reach);
     };
     model::AttributeStatistics statistics;
-    if (own) {
-      const surfel::SurfelCloud cloud = cloud_of_block(*block, inputs_.model.info());
-      std::vector<uint32_t> all(cloud.size());
-      std::iota(all.begin(), all.end(), 0);
-      statistics = model::AttributeStatistics(cloud, all);
-    }
+    if (own) statistics = statistics_of(*block, inputs_.model.info());
     const InputPiece piece{lattice_of(block->grid, inputs_.former),
                            points_of_leaf(std::move(*block), inputs_.model.info().color_bits, inputs_.former,
                                           inputs_.schema, is_affected)};
@@ -409,10 +403,7 @@ Result<model::AttributeStatistics> kept_statistics(const model::ModelFile& model
   for (size_t i = 0; i < samples; ++i) {
     Result<model::DecodedBlock> block = model.decode(leaves[i * leaves.size() / samples], model::WantedScalars::kDrawn);
     if (!block) return fail(std::move(block.error()));
-    const surfel::SurfelCloud cloud = cloud_of_block(std::move(*block), info);
-    std::vector<uint32_t> all(cloud.size());
-    std::iota(all.begin(), all.end(), 0);
-    kept.add_intensities(model::AttributeStatistics(cloud, all),
+    kept.add_intensities(statistics_of(std::move(*block), info),
                          static_cast<double>(leaves.size()) / static_cast<double>(samples));
   }
   return kept;

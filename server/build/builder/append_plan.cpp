@@ -6,18 +6,15 @@
 #include <iterator>
 #include <utility>
 
-#include "builder/part_finder.h"
 #include "geometry/zone.h"
+#include "ldc/cell_codes.h"
 #include "ldc/partition.h"
+#include "ldc/reduce.h"
 
 namespace surfcast::builder {
 namespace {
 
 using ldc::OctreeKey;
-
-/// Lines of the lattice of a coarse block between two of its rays, and the most rays (ldc/reduce.cpp).
-constexpr double kStepsOfRay = 16;
-constexpr int kMaxHalvings = 6;
 
 geometry::Box grown_by(geometry::Box box, double margin) {
   box.min -= margin;
@@ -35,16 +32,8 @@ bool holds_strictly(const geometry::RootCube& root, const geometry::Box& box) {
 bool is_in_its_cell(const ldc::BlockEntry& block, const geometry::RootCube& root) {
   constexpr double kTolerance = 1.0 / 16;
   const double side = std::ldexp(root.side, -int{block.key.depth});
-  const geometry::Box cell = grown_by(cell_box(block.key, root), std::max(block.max_radius, kTolerance * side));
+  const geometry::Box cell = grown_by(ldc::box_of(block.key, root), std::max(block.max_radius, kTolerance * side));
   return geometry::contains(cell, block.bounds.min) && geometry::contains(cell, block.bounds.max);
-}
-
-uint64_t first_code_of(const OctreeKey& key) {
-  return geometry::interleave({key.x, key.y, key.z}) << (3 * (geometry::kMortonDepth - int{key.depth}));
-}
-
-uint64_t codes_in(const OctreeKey& key) {
-  return uint64_t{1} << (3 * (geometry::kMortonDepth - int{key.depth}));
 }
 
 /// A set of octants, one bit each.
@@ -169,7 +158,7 @@ class AppendPlanner {
   [[nodiscard]] Octants occupied_octants(const OctreeKey& cell, const Blocks& leaves) const {
     Octants occupied = 0;
     for (uint32_t octant = 0; octant < 8; ++octant) {
-      const geometry::Box box = cell_box(cell.child(octant), root_.root);
+      const geometry::Box box = ldc::box_of(cell.child(octant), root_.root);
       const bool any = added_.count(cell.child(octant)) > 0 || std::ranges::any_of(leaves, [&](uint32_t leaf) {
                          return geometry::overlap(box, entry(leaf).bounds);
                        });
@@ -208,7 +197,7 @@ class AppendPlanner {
   }
 
   void add_region(const std::vector<OctreeKey>& cells, const Blocks& leaves) {
-    Part part{cells, first_code_of(cells.front()), first_code_of(cells.back()) + codes_in(cells.back()), 0};
+    Part part{cells, ldc::codes_of(cells.front()).first, ldc::codes_of(cells.back()).end, 0};
     for (const OctreeKey& cell : cells) part.count += added_.count(cell);
     for (const uint32_t leaf : leaves) {
       uint32_t& region = plan_.region_of[leaf];
@@ -248,8 +237,8 @@ std::optional<GrownRoot> grow_root(const geometry::RootCube& root, const geometr
 }
 
 std::optional<geometry::RootCube> root_of(std::span<const ldc::BlockEntry> blocks, const surfel::Grid& root_grid) {
-  for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
-    const geometry::RootCube root{root_grid.offset, std::ldexp(kStepsOfRay * root_grid.scale.x, halvings)};
+  for (int lines = 1; lines <= ldc::kLdcLines; lines *= 2) {  // of the root block, see ldc::reduce
+    const geometry::RootCube root{root_grid.offset, lines * ldc::kStepsPerRay * root_grid.scale.x};
     if (std::ranges::all_of(blocks, [&root](const ldc::BlockEntry& block) { return is_in_its_cell(block, root); })) {
       return root;
     }
@@ -306,8 +295,8 @@ bool NewPoints::any_near(const geometry::Box& box, double reach) const {
 
 bool NewPoints::any_below(const OctreeKey& key, const geometry::Box& box) const {
   // Rounding may put a point into the cell next to it.
-  if (!geometry::overlap(grown_by(cell_box(key, root_), 1e-9 * root_.side), box)) return false;
-  const uint64_t first = first_code_of(key) >> (3 * (geometry::kMortonDepth - kDepth));
+  if (!geometry::overlap(grown_by(ldc::box_of(key, root_), 1e-9 * root_.side), box)) return false;
+  const uint64_t first = ldc::codes_of(key).first >> (3 * (geometry::kMortonDepth - kDepth));
   const auto found = cells_.lower_bound(first);
   if (int{key.depth} == kDepth) {
     return found != cells_.end() && found->first == first && geometry::overlap(found->second.bounds, box);

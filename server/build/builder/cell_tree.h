@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "builder/sorted_records.h"
 #include "geometry/box.h"
 #include "geometry/morton.h"
+#include "ldc/cell_codes.h"
 #include "ldc/octree_key.h"
 #include "model/model_writer.h"
 #include "surfel/even_sampling.h"
@@ -89,12 +89,6 @@ class CellTree {
     return joined;
   }
 
-  [[nodiscard]] geometry::Box box_of(const ldc::OctreeKey& key) const {
-    const double side = std::ldexp(root_.side, -static_cast<int>(key.depth));
-    const glm::dvec3 min = root_.min + side * glm::dvec3(key.x, key.y, key.z);
-    return {min, min + side};
-  }
-
   /// The number of Items of a cell that come next, or one more than a block holds.
   Result<size_t> count(const ldc::OctreeKey& key) {
     const auto belongs = [&](uint64_t code) { return ldc::key_of_code(code, key.depth) == key; };
@@ -153,7 +147,7 @@ class CellTree {
       below.spacing = std::max(below.spacing, cell.spacing);
       cell = {};
     }
-    MergedItems<Items> merged = kind_.merge(below.items, box_of(key), kMaxItems);
+    MergedItems<Items> merged = kind_.merge(below.items, ldc::box_of(key, root_), kMaxItems);
     model::EncodedBlock block = kind_.encode(merged.items, true);
     const auto sampled = static_cast<float>(surfel::kRadiusOverSpacing * merged.side);
     block.spacing = std::max(sampled, kMinCoarsening * below.spacing);

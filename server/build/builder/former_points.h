@@ -11,6 +11,7 @@
 #include "builder/part_store.h"
 #include "ldc/subtree.h"
 #include "model/model_file.h"
+#include "model/statistics.h"
 #include "scan/scan_points.h"
 #include "scan/scan_schema.h"
 #include "surfel/surfel_cloud.h"
@@ -52,7 +53,7 @@ std::vector<ldc::FrontCell> front_of_kept(model::DecodedBlock block, const model
                                           const ldc::OctreeKey& key, const std::optional<ldc::OctreeKey>& parent,
                                           const geometry::RootCube& root, uint32_t number);
 
-/// The surfels of a decoded block as a cloud.
-surfel::SurfelCloud cloud_of_block(model::DecodedBlock block, const model::ModelInfo& info);
+/// The statistics of the surfels of a decoded block.
+model::AttributeStatistics statistics_of(model::DecodedBlock block, const model::ModelInfo& info);
 
 }  // namespace surfcast::builder

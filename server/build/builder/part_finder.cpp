@@ -35,28 +35,18 @@ bool any_contains(const std::vector<geometry::Box>& boxes, const glm::dvec3& p) 
 
 }  // namespace
 
-geometry::Box cell_box(const ldc::OctreeKey& key, const geometry::RootCube& root) {
-  const double side = std::ldexp(root.side, -int{key.depth});
-  geometry::Box box;
-  box.min = root.min + side * glm::dvec3(key.x, key.y, key.z);
-  box.max = box.min + side;
-  return box;
-}
-
 PartFinder::PartFinder(std::span<const Part> parts, const geometry::RootCube& root) : root_(root) {
   whole_ = parts.size() == 1 && parts[0].cells[0].depth == 0;
   for (const Part& part : parts) {
     std::vector<geometry::Box>& cells = cells_.emplace_back();
     std::vector<geometry::Box>& halos = with_halo_.emplace_back();
     for (const ldc::OctreeKey& key : part.cells) {
-      const int shift = 3 * (geometry::kMortonDepth - int{key.depth});
-      const uint64_t first = geometry::interleave({key.x, key.y, key.z}) << shift;
-      ranges_.push_back({first, first + (uint64_t{1} << shift), static_cast<uint32_t>(cells_.size() - 1)});
-      cells.push_back(cell_box(key, root));
+      ranges_.push_back({ldc::codes_of(key), static_cast<uint32_t>(cells_.size() - 1)});
+      cells.push_back(ldc::box_of(key, root));
       halos.push_back(grown(cells.back(), halo_of(part)));
     }
   }
-  std::ranges::sort(ranges_, {}, &CodeRange::first);
+  std::ranges::sort(ranges_, {}, first_code);
   fill_bins();
 }
 
@@ -89,8 +79,8 @@ void PartFinder::fill_bins() {
 }
 
 uint32_t PartFinder::part_of(uint64_t code) const {
-  const auto after = std::ranges::upper_bound(ranges_, code, {}, &CodeRange::first);
-  if (after == ranges_.begin() || code >= std::prev(after)->end) return kNoPart;
+  const auto after = std::ranges::upper_bound(ranges_, code, {}, first_code);
+  if (after == ranges_.begin() || code >= std::prev(after)->codes.end) return kNoPart;
   return std::prev(after)->part;
 }
 

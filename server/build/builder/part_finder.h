@@ -9,14 +9,13 @@
 #include "estimation/orient_normals.h"
 #include "geometry/box.h"
 #include "geometry/morton.h"
+#include "ldc/cell_codes.h"
 
 namespace surfcast::builder {
 
 /// Width of a part's halo around each of its cells, as a fraction of the cell's side. It is wider around cells of few
 /// points, so that it holds the neighbours of every point.
 inline constexpr double kHalo = 1.0 / 16;
-
-geometry::Box cell_box(const ldc::OctreeKey& key, const geometry::RootCube& root);
 
 /// Finds the parts of a point: the one whose cell contains it, and those whose halo contains it.
 class PartFinder {
@@ -59,19 +58,19 @@ class PartFinder {
   static constexpr int kBinDepth = 6;
   static constexpr int kBinShift = 3 * (geometry::kMortonDepth - kBinDepth);
 
-  /// The Morton codes of a cell of a part.
-  struct CodeRange {
-    uint64_t first = 0;
-    uint64_t end = 0;
+  /// A cell of a part.
+  struct PartCell {
+    ldc::CodeRange codes;
     uint32_t part = 0;
   };
+  static uint64_t first_code(const PartCell& cell) { return cell.codes.first; }
 
   void fill_bins();
   [[nodiscard]] bool is_near(uint32_t part, const glm::dvec3& point) const;
 
   geometry::RootCube root_;
   bool whole_ = false;                                 ///< the only part is the whole cube
-  std::vector<CodeRange> ranges_;                      ///< of all cells, ascending
+  std::vector<PartCell> ranges_;                       ///< of all cells, ascending
   std::vector<std::vector<geometry::Box>> cells_;      ///< for each part
   std::vector<std::vector<geometry::Box>> with_halo_;  ///< the cells of each part, extended by the halo
   std::vector<uint32_t> first_of_bin_;

@@ -13,8 +13,8 @@
 #include <oneapi/tbb/parallel_sort.h>
 
 #include "base/contract.h"
+#include "ldc/cell_codes.h"
 #include "ldc/lattice.h"
-#include "ldc/nearest_code.h"
 
 namespace surfcast::ldc {
 namespace {

@@ -18,8 +18,6 @@ namespace {
 constexpr double kLargestPart = 0.3;
 /// A level with at most this many surfels is kept whatever its ratio.
 constexpr size_t kFew = 1024;
-/// Steps of the position lattice between two rays. The position error is at most 1/18 of the ray spacing.
-constexpr int kStepsPerRay = 16;
 /// Factors on x, y and z that prefer z over y over x. They move the switch between images away from surfaces at 45
 /// degrees, which are common.
 constexpr glm::dvec3 kAxisBias{1, 1.1, 1.21};

@@ -12,6 +12,8 @@ namespace surfcast::ldc {
 
 /// Rays of a layered depth image along each side of its cell.
 inline constexpr int kLdcLines = 64;
+/// Steps of the position lattice between two rays. The position error is at most 1/18 of the ray spacing.
+inline constexpr int kStepsPerRay = 16;
 /// The most surfels of a coarse block.
 inline constexpr size_t kMaxCoarseSurfels = 16384;
 
