@@ -1,7 +1,7 @@
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
-import { CoordinateSystemSchema, ModelDescriptionSchema } from '../src/generated/surfcast_pb';
-import { contentsOf, kindOf, systemName } from '../src/state/contents';
+import { CoordinateSystemSchema, MemberDescriptionSchema, ModelDescriptionSchema } from '../src/generated/surfcast_pb';
+import { contentsOf, kindOf, originOf, systemName } from '../src/state/contents';
 
 describe('the contents of a model', () => {
   it('are points on servers that do not tell kinds apart', () => {
@@ -13,6 +13,14 @@ describe('the contents of a model', () => {
   it('lie in a coordinate system with or without a code', () => {
     expect(systemName(create(CoordinateSystemSchema, { name: 'WGS 84', id: 'EPSG:4326' }))).toBe('WGS 84 (EPSG:4326)');
     expect(systemName(create(CoordinateSystemSchema, { name: 'a site' }))).toBe('a site');
+  });
+
+  it('are drawn from models or from scans in place', () => {
+    const members = [create(MemberDescriptionSchema, { model: 'a' }), create(MemberDescriptionSchema, { model: 'b' })];
+    expect(originOf(create(ModelDescriptionSchema, {}))).toBe('a model');
+    expect(originOf(create(ModelDescriptionSchema, { inPlace: true }))).toBe('the scan, in place');
+    expect(originOf(create(ModelDescriptionSchema, { members }))).toBe('models');
+    expect(originOf(create(ModelDescriptionSchema, { inPlace: true, members }))).toBe('models, and scans in place');
   });
 
   it('name every kind', () => {

@@ -20,6 +20,12 @@ export function kindOf({ kinds }: ModelDescription): string {
   return names.length > 0 ? names.join(' and ') : kindNames['surfel']!; // none: of a server before 1.3
 }
 
+/** What is drawn: a model, or scans that none was built of. */
+export const originOf = ({ inPlace, members }: ModelDescription): string => {
+  if (!inPlace) return members.length > 0 ? 'models' : 'a model';
+  return members.length > 0 ? 'models, and scans in place' : 'the scan, in place';
+};
+
 /** The name of a coordinate system and its code, if it has one: "ETRS89 / UTM zone 32N (EPSG:25832)". */
 export const systemName = ({ name, id }: CoordinateSystem): string => (id ? `${name} (${id})` : name);
 

@@ -1,7 +1,7 @@
 import type { ComponentChildren, JSX } from 'preact';
 import type { EllipsoidDescription, ModelDescription, VolumeDescription } from '../generated/surfcast_pb';
 import { formatNumber } from '../measure/format';
-import { kindOf, systemName } from '../state/contents';
+import { kindOf, originOf, systemName } from '../state/contents';
 import { bounds, description, display, lengthDecimals, upAxis } from '../state/store';
 import { useActions } from './actions';
 import { Section, Switch } from './controls';
@@ -106,6 +106,7 @@ export function ModelPanel(): JSX.Element | null {
       <Section title={model.model}>
         <dl class="facts">
           <Row name="Kind">{kindOf(model)}</Row>
+          <Row name="Drawn from">{originOf(model)}</Row>
           <Items model={model} />
           {model.spacing > 0 && <Row name="Point spacing">{model.spacing.toPrecision(3)}</Row>}
           <Row name="Colour">{color}</Row>
@@ -115,6 +116,12 @@ export function ModelPanel(): JSX.Element | null {
           <Row name="Levels of detail">{model.levels}</Row>
           <Row name="Blocks">{count(model.blocks)}</Row>
         </dl>
+        {model.inPlace && (
+          <p class="faint">
+            No model was built of the scan. Ranges and classes are those of a part of its points. A built model gives the
+            best pictures.
+          </p>
+        )}
         <Switch label="Upside down" checked={display.value.upsideDown} onChange={() => navigator.turnOver()} />
       </Section>
       {model.volumes.map((volume, i) => (
