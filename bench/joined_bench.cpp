@@ -1,6 +1,7 @@
 // joined_bench WHOLE.surf TILE.surf...: compares pictures of one model with those of its tiles, shown as one. The
 // camera flies around the model; both are drawn in turns, with all blocks resident. Prints the medians of wall and
-// processor time of a picture, their ratio, the time to join the tiles, and the PSNR of the last pictures.
+// processor time of a picture, their ratio, the splats drawn, the time to join the tiles, and the PSNR of the last
+// pictures.
 
 #include <cmath>
 #include <cstdio>
@@ -52,6 +53,7 @@ struct Series {
   std::vector<double> wall;
   std::vector<double> processor;
   std::vector<double> select;
+  std::vector<double> splats;
 };
 
 picture::Frame draw(render::Renderer& renderer, const ModelPointer& model, const picture::PictureRequest& request,
@@ -61,6 +63,7 @@ picture::Frame draw(render::Renderer& renderer, const ModelPointer& model, const
   picture::Frame frame = bench::draw_or_exit(renderer, model, request);
   series.wall.push_back(watch.milliseconds());
   series.processor.push_back(processor_ms() - before);
+  series.splats.push_back(static_cast<double>(frame.stats.surfels_drawn));
   for (const picture::StageTime& stage : frame.stats.stages) {
     if (stage.name == "select") series.select.push_back(stage.milliseconds);
   }
@@ -97,8 +100,10 @@ void compare(render::Renderer& renderer, const ModelPointer& whole, const ModelP
   std::printf("spacing %g px: one model %.1f ms (processor %.1f, select %.2f), joined %.1f ms (%.1f, %.2f)\n", spacing,
               median(one.wall), median(one.processor), median(one.select), median(many.wall), median(many.processor),
               median(many.select));
-  std::printf("  ratio of wall times %.3f, of processor times %.3f; last pictures: %.1f dB\n",
-              median(many.wall) / median(one.wall), median(many.processor) / median(one.processor), last_psnr);
+  std::printf("  splats: %.0f and %.0f; ratio of splats %.3f, of wall times %.3f, of processor times %.3f; ",
+              median(one.splats), median(many.splats), median(many.splats) / median(one.splats),
+              median(many.wall) / median(one.wall), median(many.processor) / median(one.processor));
+  std::printf("last pictures: %.1f dB\n", last_psnr);
 }
 
 }  // namespace
@@ -112,6 +117,6 @@ int main(int argc, char** argv) {
   const ModelPointer tiles = join({argv + 2, argv + argc});
   const auto renderer = value_or_exit(render::Renderer::create({}));
   std::printf("%s\n", renderer->device().renderer.c_str());
-  for (const double spacing : {8.0, 4.0, 2.0}) compare(*renderer, whole, tiles, spacing);
+  for (const double spacing : {8.0, 4.0, 2.0, 1.0, 0.0}) compare(*renderer, whole, tiles, spacing);
   return EXIT_SUCCESS;
 }

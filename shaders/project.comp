@@ -74,6 +74,9 @@ float scatter_scale(Surfel s, float gain) {
 #endif
 }
 
+// True if only the fronts of the surfels of a run are drawn.
+bool hides_backs(uvec4 run) { return frame.flags.x != 0 && (run.z & SURFCAST_RUN_TWO_SIDED) == 0u; }
+
 #include "include/splat_bounds.glsl"
 #include "include/tile_range.glsl"
 #ifdef SURFCAST_CURVED
@@ -327,7 +330,7 @@ void collect_if_drawn(uvec4 run, BlockView block, uint place) {
   bool bent = is_bent(s, shape_of(run, at));
   away = away && !bent;  // what faces away is known of every place alone
 #endif
-  if (away && frame.flags.x != 0) return;
+  if (away && hides_backs(run)) return;
   if (s.o.z + s.radius * 2.0 <= 0.0 || !has_wanted_spacing(run, block, place, s)) return;
 #ifdef SURFCAST_CURVED
   if (bent) {
@@ -371,7 +374,7 @@ void project_other(uvec4 run, BlockView block, uint place) {
   int at = int(run.y + place);
   Shape shape = shape_of(run, at);
   if (is_bent(s, shape)) {
-    project_bent(s, surfel_normal(texelFetch(surfels, at)), shape);
+    project_bent(s, surfel_normal(texelFetch(surfels, at)), shape, hides_backs(run));
     return;
   }
 #endif

@@ -1,7 +1,10 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -9,17 +12,20 @@
 #include "builder/memory_budget.h"
 #include "cmd/commands.h"
 #include "cmd/in_place_flags.h"
+#include "cmd/open_members.h"
 #include "cmd/selection_flags.h"
 #include "cmd/store_flags.h"
 #include "exporter/export_scan.h"
+#include "model/joined_model.h"
 #include "object_store/object_store.h"
 #include "object_store/object_url.h"
+#include "service/place_members.h"
 
 namespace surfcast::cmd {
 namespace {
 
 struct ExportCommand {
-  std::filesystem::path source;
+  std::vector<std::filesystem::path> sources;
   std::filesystem::path output;
   std::string memory;
   exporter::ExportOptions options;
@@ -28,21 +34,68 @@ struct ExportCommand {
 };
 
 /// The points of a model in a store, of a scan in place, or of a file.
-Result<exporter::ExportReport> export_source(const ExportCommand& command) {
-  const std::string source = command.source.string();
-  const object_store::ObjectStore store(command.store);
-  const InPlaceOpener in_place(store, command.in_place, nullptr);
-  const bool stored = object_store::is_object_url(source);
-  if (!stored && !in_place.opens(command.source)) {
-    return exporter::export_scan(command.source, command.output, command.options);
+Result<exporter::ExportReport> export_one(const ExportCommand& command, const std::filesystem::path& source,
+                                          const object_store::ObjectStore& store, const InPlaceOpener& in_place) {
+  if (!object_store::is_object_url(source.string()) && !in_place.opens(source)) {
+    return exporter::export_scan(source, command.output, command.options);
   }
-  const std::string shown = stored ? object_store::shown_url(source) : source;
-  Result<model::ModelFile> model =
-      in_place.opens(command.source) ? in_place.open(command.source, shown) : store.open(source, shown);
-  return std::move(model).and_then([&](model::ModelFile opened) {
+  return open_model(source, store, in_place).and_then([&](model::ModelFile opened) {
     return exporter::export_model(std::make_shared<const model::ModelFile>(std::move(opened)), command.output,
                                   command.options);
   });
+}
+
+/// Why the points of a model cannot be written with those of the others; none if they can. Places it.
+std::string why_left_out(service::MemberPlacer& placer, model::Member& member) {
+  if (member.model->info().surfels == 0) return member.name + ": has no points";
+  Status status = placer.place(member);
+  if (status) status = model::check_place(member);
+  return status ? std::string() : status.error().message;
+}
+
+/// The models whose points can be stated in one coordinate system, and notes on the others.
+std::vector<model::Member> exportable(std::vector<model::Member> members, std::vector<std::string>& notes) {
+  service::MemberPlacer placer;
+  std::vector<model::Member> kept;
+  for (model::Member& member : members) {
+    if (const std::string why = why_left_out(placer, member); !why.empty()) {
+      notes.push_back("left out: " + why);
+      continue;
+    }
+    if (!member.places.empty()) {
+      notes.push_back(member.name + ": brought into the system of the first model block by block, to within " +
+                      fmt::format("{} of the spacing of its points", service::kMaxPlaceError));
+    }
+    kept.push_back(std::move(member));
+  }
+  return kept;
+}
+
+/// The points of several models.
+Result<exporter::ExportReport> export_several(const ExportCommand& command,
+                                              std::span<const std::filesystem::path> sources,
+                                              const object_store::ObjectStore& store, const InPlaceOpener& in_place) {
+  Result<std::vector<model::Member>> members = open_members(sources, store, in_place);
+  if (!members) return fail(std::move(members.error()));
+  std::vector<std::string> notes;
+  std::vector<model::Member> kept = exportable(std::move(*members), notes);
+  if (kept.empty()) return fail(ErrorKind::kUnsupported, "none of the models has points that can be written");
+  Result<model::ModelFile> joined = model::ModelFile::join(std::move(kept));
+  if (!joined) return fail(std::move(joined.error()));
+  return exporter::export_model(std::make_shared<const model::ModelFile>(std::move(*joined)), command.output,
+                                command.options)
+      .map([&](exporter::ExportReport report) {
+        report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
+        return report;
+      });
+}
+
+Result<exporter::ExportReport> export_sources(const ExportCommand& command,
+                                              std::span<const std::filesystem::path> sources) {
+  const object_store::ObjectStore store(command.store);
+  const InPlaceOpener in_place(store, command.in_place, nullptr);
+  return sources.size() == 1 ? export_one(command, sources.front(), store, in_place)
+                             : export_several(command, sources, store, in_place);
 }
 
 Status export_points(ExportCommand& command) {
@@ -50,9 +103,11 @@ Status export_points(ExportCommand& command) {
   if (!budget) return fail(budget.error());
   command.options.limit = scan::DecodingLimit{*budget / 4};
   command.options.octree.memory = *budget / 2;
-  const auto report = export_source(command);
+  const std::vector<std::filesystem::path> sources = members_of_paths(command.sources);
+  const auto report = export_sources(command, sources);
   if (!report) return fail(report.error());
-  for (const std::string& note : report->notes) spdlog::warn("{}: {}", command.source.string(), note);
+  const std::string name = sources.size() == 1 ? sources.front().string() : command.output.string();
+  for (const std::string& note : report->notes) spdlog::warn("{}: {}", name, note);
   std::cout << fmt::format("{} points, {} bytes\n", report->points, report->bytes);
   return {};
 }
@@ -65,9 +120,9 @@ void add_export_command(CLI::App& app, Status& outcome) {
       app.add_subcommand("export", "Write the points of a scan or model, or a part of them, into a file");
   export_command
       ->add_option(
-          "SCAN", command->source,
+          "SCAN", command->sources,
           "Scan: a file, or the folder of a scan in many files; or a model (.surf); or the URL of a model, or of an "
-          "octree of points (COPC, EPT)")
+          "octree of points (COPC, EPT); or several models, whose points are written together")
       ->required();
   export_command
       ->add_option(

@@ -11,6 +11,7 @@
 #include "base/mapped_file.h"
 #include "builder/build_gaussians.h"
 #include "builder/input_files.h"
+#include "cmd/open_members.h"
 #include "object_store/object_url.h"
 #include "scan/scan_folder.h"
 #include "service/model_name.h"
@@ -147,28 +148,11 @@ Result<service::NamedModel> find_one(const fs::path& path, const ScanCacheConfig
   return stored ? find_stored(url, shown, store) : find_model(path, cache);
 }
 
-/// Each of the paths, or those that it joins if there is no file of its name. URLs have plus signs of their own.
-std::vector<fs::path> members_of_paths(std::span<const fs::path> paths) {
-  std::vector<fs::path> all;
-  for (const fs::path& path : paths) {
-    std::error_code ignored;
-    const bool whole = object_store::is_object_url(path.string()) || fs::exists(path, ignored);
-    const std::vector<std::string> members = whole ? std::vector<std::string>() : access::members_of(path.string());
-    if (members.empty()) all.push_back(path);
-    all.insert(all.end(), members.begin(), members.end());
-  }
-  return all;
-}
-
-/// Gives models that are to be joined names that differ and have no plus sign.
-void set_apart(std::vector<service::NamedModel>& models) {
-  std::set<std::string> taken;
-  for (service::NamedModel& model : models) {
-    std::ranges::replace(model.name, access::kJoin, '_');
-    std::string name = model.name;
-    for (int number = 2; !taken.insert(name).second; ++number) name = model.name + "_" + std::to_string(number);
-    model.name = std::move(name);
-  }
+void name_apart(std::vector<service::NamedModel>& models) {
+  std::vector<std::string> names;
+  for (const service::NamedModel& model : models) names.push_back(model.name);
+  set_apart(names);
+  for (size_t i = 0; i < models.size(); ++i) models[i].name = std::move(names[i]);
 }
 
 }  // namespace
@@ -212,7 +196,7 @@ Result<FoundModel> find_shown_model(std::span<const fs::path> paths, const ScanC
     if (!model) return fail(std::move(model.error()));
     files.push_back(std::move(*model));
   }
-  if (files.size() > 1) set_apart(files);
+  if (files.size() > 1) name_apart(files);
   std::string name = files.front().name;
   for (size_t i = 1; i < files.size(); ++i) name += access::kJoin + files[i].name;
   auto models = std::make_unique<service::ModelCatalogue>(std::move(files), std::vector<fs::path>(), &store);

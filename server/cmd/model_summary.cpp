@@ -142,6 +142,47 @@ nlohmann::ordered_json json_of(const model::AttributeRange& range) {
           {"high", range.high}};
 }
 
+nlohmann::ordered_json json_of(const ModelSummary& summary) {
+  const model::ModelInfo& info = summary.info;
+  nlohmann::ordered_json json{
+      {"model", summary.path.string()},
+      {"sources", info.source_names},
+      {"in_place", info.in_place},
+      {"surfels", info.surfels},
+      {"scatter", info.scatter},
+      {"kinds", nlohmann::ordered_json::array()},
+      {"volumes", nlohmann::ordered_json::array()},
+      {"bytes", summary.file_bytes},
+      {"bytes_per_surfel", summary.bytes_per_surfel()},
+      {"bounds", {{"min", json_of(info.bounds.min)}, {"max", json_of(info.bounds.max)}}},
+      {"elevation", {{"low", info.elevation.low}, {"high", info.elevation.high}}},
+      {"z_up", info.z_up},
+      {"upside_down", info.upside_down},
+      {"oriented", info.oriented},
+      {"mesh_samples", info.even},
+      {"color_bits", info.color_bits},
+      {"attributes", attribute_names(info)},
+      {"ranges", nlohmann::ordered_json::array()},
+      {"classes", nlohmann::ordered_json::array()},
+      {"levels", nlohmann::ordered_json::array()},
+  };
+  if (summary.georeference.known()) json["coordinate_system"] = cmd::json_of(summary.georeference);
+  for (const model::KindCount& kind : info.kinds) json["kinds"].push_back(json_of(kind));
+  for (const model::Volume& volume : summary.volumes) json["volumes"].push_back(json_of(volume));
+  for (const model::EllipsoidSource& source : summary.ellipsoids) json["ellipsoids"].push_back(json_of(source));
+  for (const model::AttributeRange& range : info.ranges) json["ranges"].push_back(json_of(range));
+  for (const model::ClassCount& count : info.classes) {
+    json["classes"].push_back({{"code", count.code}, {"surfels", count.surfels}});
+  }
+  for (const LevelSummary& level : summary.levels) json["levels"].push_back(json_of(level));
+  return json;
+}
+
+/// Names come from files and need not be UTF-8.
+std::string dumped(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
 
 ModelSummary summarize(const model::ModelFile& model, uint64_t file_bytes) {
@@ -206,40 +247,14 @@ std::string to_text(const ModelSummary& summary) {
 }
 
 std::string to_json(const ModelSummary& summary) {
-  const model::ModelInfo& info = summary.info;
-  nlohmann::ordered_json json{
-      {"model", summary.path.string()},
-      {"sources", info.source_names},
-      {"in_place", info.in_place},
-      {"surfels", info.surfels},
-      {"scatter", info.scatter},
-      {"kinds", nlohmann::ordered_json::array()},
-      {"volumes", nlohmann::ordered_json::array()},
-      {"bytes", summary.file_bytes},
-      {"bytes_per_surfel", summary.bytes_per_surfel()},
-      {"bounds", {{"min", json_of(info.bounds.min)}, {"max", json_of(info.bounds.max)}}},
-      {"elevation", {{"low", info.elevation.low}, {"high", info.elevation.high}}},
-      {"z_up", info.z_up},
-      {"upside_down", info.upside_down},
-      {"oriented", info.oriented},
-      {"mesh_samples", info.even},
-      {"color_bits", info.color_bits},
-      {"attributes", attribute_names(info)},
-      {"ranges", nlohmann::ordered_json::array()},
-      {"classes", nlohmann::ordered_json::array()},
-      {"levels", nlohmann::ordered_json::array()},
-  };
-  if (summary.georeference.known()) json["coordinate_system"] = json_of(summary.georeference);
-  for (const model::KindCount& kind : info.kinds) json["kinds"].push_back(json_of(kind));
-  for (const model::Volume& volume : summary.volumes) json["volumes"].push_back(json_of(volume));
-  for (const model::EllipsoidSource& source : summary.ellipsoids) json["ellipsoids"].push_back(json_of(source));
-  for (const model::AttributeRange& range : info.ranges) json["ranges"].push_back(json_of(range));
-  for (const model::ClassCount& count : info.classes) {
-    json["classes"].push_back({{"code", count.code}, {"surfels", count.surfels}});
-  }
-  for (const LevelSummary& level : summary.levels) json["levels"].push_back(json_of(level));
-  // Names come from files and need not be UTF-8.
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return dumped(json_of(summary));
+}
+
+std::string to_json(const std::vector<ModelSummary>& members, const ModelSummary* joined) {
+  nlohmann::ordered_json json = joined == nullptr ? nlohmann::ordered_json::object() : json_of(*joined);
+  json["members"] = nlohmann::ordered_json::array();
+  for (const ModelSummary& member : members) json["members"].push_back(json_of(member));
+  return dumped(json);
 }
 
 }  // namespace surfcast::cmd

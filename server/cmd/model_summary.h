@@ -48,5 +48,7 @@ ModelSummary summarize(const model::ModelFile& model, uint64_t file_bytes);
 /// Lines of `name: value` for a person.
 std::string to_text(const ModelSummary& summary);
 std::string to_json(const ModelSummary& summary);
+/// Several models: what all of them are as one, if that is known, with a list "members" of each.
+std::string to_json(const std::vector<ModelSummary>& members, const ModelSummary* joined);
 
 }  // namespace surfcast::cmd

@@ -15,7 +15,8 @@ vec3 color_of_normal(vec3 n) {
 
 Fragment surfel_fragment(uvec4 a, uvec4 b, uvec4 c, vec2 ray) {
   vec3 n = uintBitsToFloat(b.xyz);
-  float radius = uintBitsToFloat(c.x);
+  float signed_radius = uintBitsToFloat(c.x);
+  float radius = abs(signed_radius);
   vec2 last = unpack_halves(c.z);
   vec3 k = vec3(unpack_halves(c.y), last.x);
   vec3 d = vec3(ray, 1.0);
@@ -23,7 +24,7 @@ Fragment surfel_fragment(uvec4 a, uvec4 b, uvec4 c, vec2 ray) {
   vec3 u, v;
   tangent_frame(n, u, v);
   // A surface without a back is seen from the side on which the eye is.
-  if (frame.flags.x == 0 && dot(n, o) > 0.0) {
+  if (signed_radius < 0.0 && dot(n, o) > 0.0) {
     n = -n;
     k = -k;
   }

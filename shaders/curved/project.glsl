@@ -52,7 +52,7 @@ Shape in_camera(mat3 rotation, vec3 world_n, vec3 n, Shape shape) {
 // Every point of the surface faces away from the eye: normals and rays turn by less than the sum of both shares.
 bool bent_away(vec3 o, vec3 n, float bend, float extent) {
   float distance = max(length(o), 1e-30);
-  return frame.flags.x != 0 && dot(n, o) >= distance * min(1.0, bend * extent + extent / distance);
+  return dot(n, o) >= distance * min(1.0, bend * extent + extent / distance);
 }
 
 // Pixels of the ball about the surface.
@@ -70,21 +70,21 @@ void ball_bounds(vec3 o, float r, out vec2 low, out vec2 high) {
   high = pixel_of_ray(vec2(last.x, first.y)) + kMargin;
 }
 
-// `world_n`: the stored normal.
-void project_bent(Surfel s, vec3 world_n, Shape shape) {
+// `world_n`: the stored normal. `front`: only its front is drawn. The radius of the record has a minus sign otherwise.
+void project_bent(Surfel s, vec3 world_n, Shape shape, bool front) {
   mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
   vec3 n = rotation * world_n;
   shape = in_camera(rotation, world_n, n, shape);
   vec3 bend = shape.bend;
   float extent = surfel_extent(s.radius);
   float largest = largest_curvature(bend);
-  if (bent_away(s.o, n, largest / s.radius, extent)) return;
+  if (front && bent_away(s.o, n, largest / s.radius, extent)) return;
   float sag = 0.5 * largest * extent * extent / s.radius;
   float ball = sqrt(extent * extent + sag * sag);
   if (s.o.z + ball <= 0.0) return;
   vec2 low, high;
   ball_bounds(s.o, ball, low, high);
   append_record(low, high, floatBitsToUint(s.o), uvec4(floatBitsToUint(n), s.color),
-                uvec4(floatBitsToUint(s.radius), pack_halves(bend.xy),
+                uvec4(floatBitsToUint(front ? s.radius : -s.radius), pack_halves(bend.xy),
                       pack_halves(vec2(bend.z, kWeightRoot * sqrt(s.weight))), pack_halves(shape.border)));
 }

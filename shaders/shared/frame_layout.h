@@ -103,11 +103,12 @@ struct Chunk {
   SURFCAST_UVEC4 run;
 };
 #define SURFCAST_RUN_COUNT 0xffffu
-#define SURFCAST_RUN_FINEST 0x10000u    // surfels of the block itself, not merged ones
-#define SURFCAST_RUN_COARSEST 0x20000u  // not merged any further
-#define SURFCAST_RUN_PAIRS 0x40000u     // each pair, from the first texel on, is merged to one surfel of another run
-#define SURFCAST_RUN_SCATTER 0x80000u   // scatter, in variants of the projection that draw it
-#define SURFCAST_RUN_CURVED 0x100000u   // surfels have two texels: the second one is their curvature
+#define SURFCAST_RUN_FINEST 0x10000u      // surfels of the block itself, not merged ones
+#define SURFCAST_RUN_COARSEST 0x20000u    // not merged any further
+#define SURFCAST_RUN_PAIRS 0x40000u       // each pair, from the first texel on, is merged to one surfel of another run
+#define SURFCAST_RUN_SCATTER 0x80000u     // scatter, in variants of the projection that draw it
+#define SURFCAST_RUN_CURVED 0x100000u     // surfels have two texels: the second one is their curvature
+#define SURFCAST_RUN_TWO_SIDED 0x200000u  // normals do not tell front from back
 // Merged surfels replace their pair slightly early, because rounding could otherwise drop both.
 #define SURFCAST_SPACING_SLACK 0.99
 

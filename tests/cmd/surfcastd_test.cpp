@@ -426,6 +426,107 @@ TEST_F(SurfcastdTest, InspectsAModelForPeopleAndPrograms) {
   EXPECT_NEAR(model["bounds"]["max"][0].get<double>(), 9, 0.01);
 }
 
+size_t occurrences(const std::string& text, const std::string& part) {
+  size_t found = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST_F(SurfcastdTest, InspectsSeveralModelsAndAllOfThemAsOne) {
+  std::ofstream(folder_ / "more.xyz") << "0 0 5\n1 0 5\n0 1 5\n1 1 5\n";
+  ASSERT_EQ(run("build scan.ply --output a.surf").exit_code, 0);
+  ASSERT_EQ(run("build more.xyz --output b.surf").exit_code, 0);
+  const Answer answer = run("inspect a.surf b.surf --json");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.err, "");
+  const nlohmann::json models = nlohmann::json::parse(answer.out);
+  EXPECT_EQ(models["model"], "a+b");
+  EXPECT_EQ(models["surfels"], 104);
+  EXPECT_EQ(models["bytes"], fs::file_size(folder_ / "a.surf") + fs::file_size(folder_ / "b.surf"));
+  EXPECT_NEAR(models["bounds"]["max"][2].get<double>(), 5, 0.01);
+  ASSERT_EQ(models["members"].size(), 2U);
+  EXPECT_EQ(models["members"][0], nlohmann::json::parse(run("inspect a.surf --json").out));
+  EXPECT_EQ(models["members"][1], nlohmann::json::parse(run("inspect b.surf --json").out));
+  EXPECT_EQ(run("inspect a.surf+b.surf --json").out, answer.out);
+  const std::string text = run("inspect a.surf b.surf --verify").out;
+  EXPECT_EQ(text.find("model: a.surf\n"), 0U);
+  EXPECT_LT(text.find("\nmodel: b.surf\n"), text.find("\nmodel: a+b\n")) << text;
+  EXPECT_NE(text.find("\nsurfels: 104\n"), std::string::npos);
+  EXPECT_EQ(occurrences(text, "verified: every block\n"), 2U);
+  const Answer scan = run("inspect a.surf more.xyz");
+  EXPECT_EQ(scan.exit_code, 1);
+  EXPECT_EQ(scan.err.find("surfcastd: more.xyz: "), 0U) << scan.err;
+  EXPECT_EQ(occurrences(scan.err, "\n"), 1U);
+}
+
+TEST_F(SurfcastdTest, ExportsThePointsOfSeveralModels) {
+  std::ofstream(folder_ / "more.xyz") << "0 0 5\n1 0 5\n0 1 5\n1 1 5\n";
+  write_ramp(folder_ / "ramp.nrrd");
+  for (const char* build : {"scan.ply --output a.surf", "more.xyz --output b.surf", "ramp.nrrd --output ramp.surf"}) {
+    ASSERT_EQ(run("build " + std::string(build)).exit_code, 0) << build;
+  }
+  ASSERT_EQ(run("export a.surf --output a.csv").exit_code, 0);
+  const std::string alone = content(folder_ / "a.csv");
+  const Answer both = run("export a.surf b.surf --output both.csv");
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_EQ(both.err, "");
+  EXPECT_EQ(both.out.find("104 points, "), 0U) << both.out;
+  // What has no colours is grey, as if both were built as one.
+  EXPECT_EQ(sorted_lines(content(folder_ / "both.csv")),
+            sorted_lines(alone + "0,0,5,128,128,128\n1,0,5,128,128,128\n0,1,5,128,128,128\n1,1,5,128,128,128\n"));
+  const Answer part = run("export a.surf+ramp.surf --output part.csv");
+  ASSERT_EQ(part.exit_code, 0) << part.err;
+  EXPECT_EQ(content(folder_ / "part.csv"), alone);
+  EXPECT_NE(part.err.find("part.csv: left out: ramp: has no points\n"), std::string::npos) << part.err;
+  EXPECT_EQ(occurrences(part.err, "\n"), 1U);
+  const Answer none = run("export ramp.surf ramp.surf --output none.csv");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_EQ(none.err, "surfcastd: none of the models has points that can be written\n");
+  const Answer scan = run("export a.surf more.xyz --output none.csv");
+  EXPECT_EQ(scan.exit_code, 1);
+  EXPECT_EQ(scan.err.find("surfcastd: more.xyz: "), 0U) << scan.err;
+  EXPECT_FALSE(fs::exists(folder_ / "none.csv"));
+}
+
+/// 10 by 10 points at distances of 1 m about 12 degrees east, in a zone of UTM; `also` adds as many far away.
+void write_site(const fs::path& path, double easting, double also) {
+  std::ofstream scan(path);
+  scan.precision(12);
+  scan << "x,y,z\n";
+  for (int i = 0; i < (also > 0 ? 200 : 100); ++i) {
+    scan << easting + i % 10 + (i < 100 ? 0 : also) << ',' << 5'320'000 + i / 10 % 10 << ",250\n";
+  }
+}
+
+TEST_F(SurfcastdTest, ModelsOfSeveralSystemsAreStatedInTheFirst) {
+  write_site(folder_ / "here.csv", 723'700, 0);
+  write_site(folder_ / "near.csv", 276'300, 0);
+  write_site(folder_ / "wide.csv", 276'300, 90'000);
+  ASSERT_EQ(run("build here.csv --crs EPSG:25832 --output here.surf").exit_code, 0);
+  ASSERT_EQ(run("build near.csv --crs EPSG:25833 --output near.surf").exit_code, 0);
+  ASSERT_EQ(run("build wide.csv --crs EPSG:25833 --output wide.surf").exit_code, 0);
+  const Answer answer = run("export here.surf near.surf wide.surf --output all.csv");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.out.find("200 points, "), 0U) << answer.out;
+  EXPECT_NE(answer.err.find("near: brought into the system of the first model block by block, to within 0.25 of the "
+                            "spacing of its points\n"),
+            std::string::npos)
+      << answer.err;
+  EXPECT_NE(answer.err.find("left out: wide: "), std::string::npos);
+  EXPECT_EQ(occurrences(answer.err, "\n"), 2U);
+  std::istringstream lines(content(folder_ / "all.csv"));
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) EXPECT_NEAR(std::stod(line), 723'700, 5'000);
+  EXPECT_EQ(nlohmann::json::parse(run("inspect here.surf near.surf --json").out)["surfels"], 200);
+  const Answer inspected = run("inspect here.surf wide.surf --json");
+  ASSERT_EQ(inspected.exit_code, 0) << inspected.err;
+  EXPECT_NE(inspected.err.find("no totals: wide: "), std::string::npos) << inspected.err;
+  const nlohmann::json models = nlohmann::json::parse(inspected.out);
+  EXPECT_FALSE(models.contains("surfels"));
+  EXPECT_EQ(models["members"].size(), 2U);
+}
+
 TEST_F(SurfcastdTest, AKindOfBlocksThatItDoesNotKnowIsCountedAndNamed) {
   fs::copy_file(fs::path(SURFCAST_TEST_DATA) / "square-and-balls-v3.surf", folder_ / "model.surf");
   const nlohmann::json model = nlohmann::json::parse(run("inspect model.surf --json").out);

@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "gaussian/mixed_scene_fixture.h"
+#include "model/write_model.h"
+#include "support/clouds.h"
+#include "surfel/curvature.h"
 
 namespace surfcast::gaussian {
 namespace {
@@ -41,8 +44,45 @@ glm::dvec3 code_at(const picture::Image& image, int x, int y) {
   return glm::dvec3(p);
 }
 
+/// Every point, from the axis z.
+picture::PictureRequest axis_view() {
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{0, 0, 12}, {0, 0, 0}, {0, 1, 0}, 35};
+  request.width = kWidth;
+  request.height = kHeight;
+  request.spacing = 0;
+  return request;
+}
+
+/// Domes whose tops are at z = 0, with normals away from the eye of axis_view().
+surfel::SurfelCloud domes_from_behind() {
+  surfel::SurfelCloud cloud = testing::square(30, 2, {1.5, 0, 0}, {0, 0, -1}, {20, 90, 200});
+  surfel::add_curvature(std::vector<surfel::CurvatureCode>(cloud.size(), {200, 0, 100, 0}), cloud);
+  return cloud;
+}
+
 class JoinedModelsGL : public testing::MixedSceneFixture {
  protected:
+  ModelPointer written(const std::string& name, const surfel::SurfelCloud& cloud) {
+    const std::filesystem::path path = folder_ / (name + ".surf").c_str();
+    const Result<model::WriteReport> report = model::write_model(cloud, path, {});
+    EXPECT_TRUE(report) << (report ? "" : report.error().message);
+    return std::make_shared<const model::ModelFile>(std::move(*model::ModelFile::open(path)));
+  }
+  /// Two models together cost what each costs alone, and each looks as it does alone.
+  static void expect_each_as_alone(const ModelPointer& a, const ModelPointer& b) {
+    const ModelPointer joined = join({{"a", a}, {"b", b}});
+    const picture::Frame both = draw(*renderer_, joined, axis_view());
+    const picture::Frame first = draw(*renderer_, a, axis_view());
+    const picture::Frame second = draw(*renderer_, b, axis_view());
+    EXPECT_EQ(both.stats.surfels_drawn, first.stats.surfels_drawn + second.stats.surfels_drawn);
+    EXPECT_EQ(both.stats.blocks_selected, first.stats.blocks_selected + second.stats.blocks_selected);
+    picture::PictureRequest request = axis_view();
+    request.hidden_models = {"b"};
+    EXPECT_EQ(draw(*renderer_, joined, request).image.pixels, first.image.pixels);
+    request.hidden_models = {"a"};
+    EXPECT_EQ(draw(*renderer_, joined, request).image.pixels, second.image.pixels);
+  }
   /// Points on hills of several colours, at random places, with x from `low` to `high`.
   std::filesystem::path hills(const std::string& name, double low, double high) {
     std::mt19937 random(3);
@@ -127,6 +167,81 @@ TEST_F(JoinedModelsGL, HiddenMembersAreNeitherDrawnNorSelected) {
   EXPECT_TRUE(std::ranges::all_of(nothing.image.pixels, [](std::byte code) { return code == std::byte{0}; }));
   request.hidden_models = {"another"};
   EXPECT_EQ(draw(*renderer_, joined, request).image.pixels, draw(*renderer_, joined, hills_view()).image.pixels);
+}
+
+/// Strips of the hills that are single blocks.
+TEST_F(JoinedModelsGL, FromAfarManyScansAreDrawnWithAsFewSurfelsAsOne) {
+  constexpr int kStrips = 10;
+  std::vector<std::pair<std::string, ModelPointer>> strips;
+  for (int i = 0; i < kStrips; ++i) {
+    const std::string name = "strip" + std::to_string(i);
+    const double low = -1 + 2.0 * i / kStrips;
+    strips.emplace_back(name, build({hills(name + ".csv", low, low + 2.0 / kStrips)}));
+    ASSERT_EQ(strips.back().second->blocks().size(), 1U);
+  }
+  const ModelPointer whole = build({hills("whole.csv", -1, 1.1)});
+  const ModelPointer joined = join(strips);
+  picture::PictureRequest request = hills_view();
+  request.camera->position *= 3;
+  request.spacing = 8;
+  const picture::Frame one = draw(*renderer_, whole, request);
+  const picture::Frame many = draw(*renderer_, joined, request);
+  EXPECT_LT(static_cast<double>(many.stats.surfels_drawn), 1.5 * static_cast<double>(one.stats.surfels_drawn));
+  EXPECT_EQ(many.stats.blocks_drawn, 1U);
+
+  request.spacing = 0;
+  const picture::Image exact = draw(*renderer_, whole, request).image;
+  const auto psnr = [&](const picture::Image& image) {
+    double squares = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const glm::dvec3 difference = code_at(image, x, y) - code_at(exact, x, y);
+        squares += glm::dot(difference, difference) / 3;
+      }
+    }
+    return 10 * std::log10(255.0 * 255.0 * kWidth * kHeight / squares);
+  };
+  EXPECT_GT(psnr(many.image), psnr(one.image) - 2);
+  RecordProperty("psnr_of_one_model", std::to_string(psnr(one.image)));
+  RecordProperty("psnr_of_strips", std::to_string(psnr(many.image)));
+
+  request.spacing = 8;
+  request.hidden_models = {"strip4"};
+  const picture::Image without = draw(*renderer_, joined, request).image;
+  const auto frame = *geometry::make_camera_frame(*request.camera, kWidth, kHeight);
+  const glm::dvec2 hidden = frame.project(frame.to_camera({-0.1, 0, 0}));
+  const glm::dvec2 shown = frame.project(frame.to_camera({0.3, 0, 0}));
+  const auto alpha = [&](const glm::dvec2& at) {
+    const auto pixel = static_cast<size_t>(at.y) * kWidth + static_cast<size_t>(at.x);
+    return static_cast<int>(without.pixels[4 * pixel + 3]);
+  };
+  EXPECT_EQ(alpha(hidden), 0);
+  EXPECT_EQ(alpha(shown), 255);
+}
+
+TEST_F(JoinedModelsGL, AScanWithoutFrontsDoesNotShowTheBacksOfOthers) {
+  surfel::SurfelCloud two_sided = testing::fibonacci_sphere(20'000, 1, {1.5, 0, 0}, {20, 90, 200});
+  two_sided.oriented = false;
+  const ModelPointer fronts = written("fronts", testing::fibonacci_sphere(200'000, 1, {-1.5, 0, 0}, {200, 90, 20}));
+  const ModelPointer sides = written("sides", two_sided);
+  const uint64_t all = draw(*renderer_, sides, axis_view()).stats.surfels_drawn;
+  ASSERT_EQ(all, two_sided.size());
+  ASSERT_LT(draw(*renderer_, fronts, axis_view()).stats.surfels_drawn, 100'000U);
+  expect_each_as_alone(fronts, sides);
+  expect_each_as_alone(sides, fronts);
+}
+
+TEST_F(JoinedModelsGL, SurfelsWithCurvatureHaveAsManySidesAsAlone) {
+  surfel::SurfelCloud sphere = testing::fibonacci_sphere(20'000, 1, {-1.5, 0, 0}, {200, 90, 20});
+  surfel::SurfelCloud domes = domes_from_behind();
+  const ModelPointer backs = written("backs", domes);
+  domes.oriented = false;
+  const ModelPointer sides = written("sides", domes);
+  ASSERT_EQ(draw(*renderer_, backs, axis_view()).stats.surfels_drawn, 0U);
+  ASSERT_EQ(draw(*renderer_, sides, axis_view()).stats.surfels_drawn, domes.size());
+  expect_each_as_alone(written("sphere", sphere), sides);
+  sphere.oriented = false;
+  expect_each_as_alone(backs, written("sphere", sphere));
 }
 
 TEST_F(JoinedModelsGL, TheDefaultCameraShowsAllMembers) {

@@ -1,9 +1,12 @@
 #include "model/joined_model.h"
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -50,8 +53,8 @@ void expect_same_points(const DecodedBlock& a, const DecodedBlock& b) {
 
 TEST(JoinedModel, IsTheForestOfItsMembers) {
   const TestFolder folder;
-  const ModelPointer a = sphere(folder, "a", sphere_cloud(50000));
-  const ModelPointer b = sphere(folder, "b", moved(sphere_cloud(70000), {3, 0, 0}));
+  const ModelPointer a = sphere(folder, "a", sphere_cloud(20000));
+  const ModelPointer b = sphere(folder, "b", moved(sphere_cloud(30000), {3, 0, 0}));
   const ModelFile model = joined({{"a", a}, {"b", b}});
   ASSERT_EQ(model.blocks().size(), a->blocks().size() + b->blocks().size());
   EXPECT_EQ(model.tree().roots().size(), a->tree().roots().size() + b->tree().roots().size());
@@ -94,7 +97,9 @@ TEST(JoinedModel, HasThePropertiesOfAllItsMembers) {
   EXPECT_EQ(info.range_of("intensity")->smallest, 0.5);
   EXPECT_EQ(info.range_of("intensity")->largest, 7);
   EXPECT_FALSE(info.oriented) << "one of the scans is not";
-  for (const ldc::BlockEntry& block : model.blocks()) EXPECT_FALSE(block.normals);
+  for (uint32_t i = 0; i < model.blocks().size(); ++i) {
+    EXPECT_EQ(model.blocks()[i].normals.has_value(), model.part(i).member == 0) << "the other has normals that count";
+  }
   ASSERT_EQ(info.classes.size(), 2U);
   EXPECT_EQ(info.classes[0].code, 0U) << "surfels without a class count as unclassified";
   EXPECT_EQ(info.classes[0].surfels, 1000U);
@@ -145,6 +150,128 @@ TEST(JoinedModel, FillsInWhatAMemberLacks) {
   ASSERT_TRUE(drawn);
   ASSERT_EQ(drawn->scalars.size(), 1U) << "times are not drawn";
   EXPECT_FLOAT_EQ(alpha(*drawn), 0.2F);
+}
+
+/// A wavy square of side 1 with surfels on a grid, of one colour.
+surfel::SurfelCloud square_tile(const glm::dvec3& at, int side, const glm::u16vec3& color) {
+  surfel::SurfelCloud cloud;
+  cloud.colors = surfel::ColorAttribute{8, {}};
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) / double(side);
+      cloud.positions.emplace_back(at + glm::dvec3(place, 0.01 * std::sin(9 * (at.x + place.x))));
+      cloud.radii.push_back(1.1F / static_cast<float>(side));
+      cloud.colors->values.push_back(color);
+    }
+  }
+  cloud.oriented = true;
+  const auto count = cloud.size();
+  cloud.scalars.push_back({"intensity", std::vector<uint16_t>(count, static_cast<uint16_t>(100 + 10 * at.x))});
+  cloud.scalars.push_back({"time", std::vector<double>(count, 3)});
+  return finish_cloud(std::move(cloud));
+}
+
+constexpr int kTiles = 16;
+
+std::string tile_name(int tile) {
+  return "tile" + std::to_string(tile);
+}
+
+/// 4 x 4 tiles, each a single block.
+std::vector<Member> square_tiles(const TestFolder& folder) {
+  std::vector<Member> members;
+  for (int i = 0; i < kTiles; ++i) {
+    const glm::u16vec3 color(i % 2 == 0 ? 200 : 20, 100, 50);
+    members.push_back({tile_name(i), sphere(folder, tile_name(i), square_tile({i % 4, i / 4, 0}, 64, color))});
+    if (members.back().model->blocks().size() != 1) throw std::runtime_error("a tile of several blocks");
+  }
+  return members;
+}
+
+double area_of(const DecodedBlock& block) {
+  double area = 0;
+  for (const float radius : block.radii) area += double{radius} * double{radius};
+  return area;
+}
+
+TEST(JoinedModel, HasCoarseBlocksAboveItsMembers) {
+  const TestFolder folder;
+  const ModelFile model = joined(square_tiles(folder));
+  const ldc::BlockTree& tree = model.tree();
+  ASSERT_EQ(tree.roots().size(), 1U);
+  ASSERT_EQ(model.blocks().size(), kTiles + 1U) << "four tiles have as many surfels as a block may have";
+  EXPECT_EQ(model.info().surfels, kTiles * 64U * 64U) << "blocks above the members have no surfels of their own";
+  EXPECT_EQ(model.info().levels, 2);
+  const uint32_t root = tree.roots().front();
+  EXPECT_TRUE(model.members_of(root).count() == kTiles);
+  EXPECT_EQ(&model.part(root).model, &model);
+  EXPECT_FALSE(model.stored(root));
+
+  const Result<DecodedBlock> top = model.decode(root);
+  ASSERT_TRUE(top);
+  const ldc::BlockEntry& entry = model.blocks()[root];
+  EXPECT_NEAR(static_cast<double>(top->size()), 64 * 64, 200) << "a surfel for each ray";
+  EXPECT_LE(top->size(), entry.surfels);
+  double area = 0;
+  double red = 0;
+  double intensity = 0;
+  for (uint32_t block = 1; block <= kTiles; ++block) area += area_of(*model.decode(block));
+  EXPECT_NEAR(area_of(*top) / area, 1, 0.05);
+  ASSERT_EQ(top->scalars.size(), 1U) << "times have no mean";
+  for (size_t i = 0; i < top->size(); ++i) {
+    const glm::dvec3 at = top->position(i);
+    EXPECT_EQ(glm::clamp(at, entry.bounds.min - 0.01, entry.bounds.max + 0.01), at);
+    EXPECT_NEAR(at.z, 0.01 * std::sin(9 * at.x), 0.003);
+    EXPECT_LE(top->radii[i], entry.max_radius);
+    EXPECT_GT(top->normals[i].z, 0.9F);
+    red += top->colors[i].x;
+    intensity += std::get<std::vector<uint16_t>>(top->scalars[0].values)[i];
+  }
+  EXPECT_NEAR(intensity / static_cast<double>(top->size()), 115, 1);
+  EXPECT_NEAR(red / static_cast<double>(top->size()), 110, 3);
+  EXPECT_TRUE(model.decode(root, WantedScalars::kNone)->scalars.empty());
+  expect_same_points(*top, *model.decode(root));
+}
+
+TEST(JoinedModel, HidesMembersBelowACoarseBlock) {
+  const TestFolder folder;
+  const ModelFile model = joined(square_tiles(folder));
+  const std::vector<bool> hidden = hidden_members(model, std::vector{tile_name(3), tile_name(9)});
+  const std::vector<uint32_t> shown = shown_roots(model, hidden);
+  ASSERT_EQ(shown.size(), kTiles - 2U);
+  for (const uint32_t block : shown) {
+    const uint32_t member = model.part(block).member;
+    EXPECT_TRUE(member != 3 && member != 9);
+  }
+  EXPECT_EQ(shown_roots(model, {}), std::vector<uint32_t>{0});
+  EXPECT_TRUE(shown_roots(model, std::vector<bool>(kTiles, true)).empty());
+}
+
+TEST(JoinedModel, ACoarseBlockOfADamagedMemberNamesIt) {
+  const TestFolder folder;
+  std::vector<Member> members = square_tiles(folder);
+  const std::filesystem::path path = folder / "tile5.surf";
+  {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(members[5].model->blocks()[0].offset) + 100);
+    file.write("damage", 6);
+  }
+  members[5].model = shared(*ModelFile::open(path));
+  const ModelFile model = joined(std::move(members));
+  const Result<DecodedBlock> top = model.decode(0);
+  ASSERT_FALSE(top);
+  EXPECT_THAT(top.error().message, ::testing::StartsWith(path.string() + ": block 0: "));
+}
+
+TEST(JoinedModel, ManyThreadsMakeACoarseBlockOnce) {
+  const TestFolder folder;
+  const ModelFile model = joined(square_tiles(folder));
+  std::vector<DecodedBlock> blocks(4);
+  {
+    std::vector<std::jthread> threads;
+    for (DecodedBlock& block : blocks) threads.emplace_back([&model, &block] { block = *model.decode(0); });
+  }
+  for (const DecodedBlock& block : blocks) expect_same_points(block, blocks[0]);
 }
 
 Volume one_brick_volume(const std::string& name) {

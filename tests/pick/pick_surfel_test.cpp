@@ -380,5 +380,19 @@ TEST_F(PickSurfel, OfAJoinedModelNamesTheMemberAndLeavesOutHiddenOnes) {
   EXPECT_FALSE(pick(*joined, query));
 }
 
+TEST_F(PickSurfel, OfAJoinedModelOnlyTheBacksOfScansWithoutFrontsArePicked) {
+  const auto away =
+      std::make_shared<const model::ModelFile>(model_of(testing::square(50, 2, {0, 0, 1}, {0, 0, -1}, {255, 0, 0})));
+  surfel::SurfelCloud two_sided = testing::square(50, 2, {0, 0, 0}, {0, 0, -1}, {0, 0, 255});
+  two_sided.oriented = false;
+  const auto sides = std::make_shared<const model::ModelFile>(model_of(two_sided));
+  const Result<model::ModelFile> joined = model::ModelFile::join({{"away", away}, {"sides", sides}});
+  ASSERT_TRUE(joined);
+  const auto picked = pick(*joined, query_at(160.5, 120.5, {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30}));
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(picked->member, 1U);
+  EXPECT_GT(picked->normal.z, 0.99) << "it is turned towards the eye";
+}
+
 }  // namespace
 }  // namespace surfcast::pick

@@ -47,6 +47,28 @@ ldc::BlockTree two_splits() {
   return ldc::BlockTree(blocks);
 }
 
+TEST(SelectBlocks, RefinementStartsFromTheGivenRoots) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  const std::vector<uint32_t> roots{1, 3};
+  SelectionCriteria criteria;
+  criteria.roots = &roots;
+  criteria.spacing = 1e6;
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  std::vector<bool> resident(blocks.blocks().size(), false);
+  const BlockSelection coarse = select_blocks(tree, frame, criteria, resident);
+  EXPECT_THAT(coarse.target, ElementsAre(1, 3));
+  EXPECT_EQ(coarse.holes, 2U);
+  ASSERT_EQ(coarse.wanted.size(), 2U);
+  EXPECT_EQ(coarse.wanted[0].urgency, std::numeric_limits<double>::infinity()) << "nothing is drawn in its place";
+  criteria.spacing = 0;
+  resident.assign(resident.size(), true);
+  const BlockSelection fine = select_blocks(tree, frame, criteria, resident);
+  EXPECT_EQ(fine.draw.size(), 8U);
+  for (const uint32_t block : fine.draw)
+    EXPECT_TRUE(blocks.blocks()[block].parent == 1 || blocks.blocks()[block].parent == 3);
+}
+
 TEST(SelectBlocks, RandomTreesAndCamerasAreCoveredOnceWhateverIsResident) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ldc/cell_codes.h"
+#include "model/block_cloud.h"
 #include "model/block_decoder.h"
 #include "model/block_fields.h"
 #include "scan/merge_schemas.h"
@@ -52,22 +53,6 @@ std::array<std::vector<uint32_t>, 8> by_octant(const surfel::SurfelCloud& cloud,
     octants.at(ldc::octant_of_code(code, cell.depth)).push_back(i);
   }
   return octants;
-}
-
-/// The surfels of a decoded block as a cloud.
-surfel::SurfelCloud cloud_of_block(model::DecodedBlock block, const model::ModelInfo& info) {
-  surfel::SurfelCloud cloud;
-  cloud.oriented = info.oriented;
-  cloud.z_up = info.z_up;
-  for (size_t i = 0; i < block.size(); ++i) cloud.positions.push_back(block.position(i));
-  cloud.normals = std::move(block.normals);
-  cloud.radii = std::move(block.radii);
-  cloud.weights = std::move(block.weights);
-  cloud.scatter = std::move(block.scatter);
-  if (info.color_bits != 0) cloud.colors = surfel::ColorAttribute{info.color_bits, std::move(block.colors)};
-  cloud.scalars = std::move(block.scalars);
-  cloud.sources = {{"", 0, cloud.size(), std::nullopt}};
-  return cloud;
 }
 
 }  // namespace
@@ -144,14 +129,14 @@ scan::ScanPoints points_of_leaf(model::DecodedBlock block, int color_bits, const
 }
 
 model::AttributeStatistics statistics_of(model::DecodedBlock block, const model::ModelInfo& info) {
-  const surfel::SurfelCloud cloud = cloud_of_block(std::move(block), info);
+  const surfel::SurfelCloud cloud = model::cloud_of(std::move(block), info);
   return {cloud, all_of(cloud.size())};
 }
 
 std::vector<ldc::FrontCell> front_of_kept(model::DecodedBlock block, const model::ModelFile& model, bool leaf,
                                           const ldc::OctreeKey& key, const std::optional<ldc::OctreeKey>& parent,
                                           const geometry::RootCube& root, uint32_t number) {
-  const surfel::SurfelCloud cloud = cloud_of_block(std::move(block), model.info());
+  const surfel::SurfelCloud cloud = model::cloud_of(std::move(block), model.info());
   if (!leaf) {
     constexpr float kAnyRadius = std::numeric_limits<float>::max();
     return {{key, {number}, ldc::sample_surfels(cloud, all_of(cloud.size()), kAnyRadius)}};

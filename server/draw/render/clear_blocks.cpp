@@ -1,9 +1,7 @@
 #include "render/clear_blocks.h"
 
 #include <algorithm>
-#include <cstddef>
 
-#include "model/hidden_members.h"
 #include "render/visible_parts.h"
 
 namespace surfcast::render {
@@ -23,29 +21,6 @@ bool may_show(const model::ModelFile& model, size_t block, const std::vector<Vis
 }
 
 }  // namespace
-
-namespace {
-
-/// Hides the blocks of these members, too. The blocks of a member follow those of the one before.
-void hide_members(const model::ModelFile& model, const std::vector<bool>& hidden_members, std::vector<bool>& hidden) {
-  hidden.resize(model.blocks().size(), false);
-  auto block = hidden.begin();
-  for (size_t member = 0; member < hidden_members.size(); ++member) {
-    const auto end = block + static_cast<std::ptrdiff_t>(model.members()[member].model->blocks().size());
-    if (hidden_members[member]) std::fill(block, end, true);
-    block = end;
-  }
-}
-
-}  // namespace
-
-std::vector<bool> hidden_blocks(const model::ModelFile& model, const VolumeLook& look,
-                                std::span<const std::string> hidden_models) {
-  std::vector<bool> hidden = clear_blocks(model, look);
-  const std::vector<bool> members = model::hidden_members(model, hidden_models);
-  if (!members.empty()) hide_members(model, members, hidden);
-  return hidden;
-}
 
 std::vector<bool> clear_blocks(const model::ModelFile& model, const VolumeLook& look) {
   if (model.volumes().empty()) return {};

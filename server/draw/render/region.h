@@ -40,7 +40,7 @@ Region with_margin(const Region& region, int margin, int width, int height);
 
 /// What the passes need to know of the surfels.
 struct SurfelFacts {
-  bool oriented = false;  ///< normals tell front from back
+  bool oriented = false;  ///< normals of some of them tell front from back
   bool even = false;      ///< see ModelInfo::even
 };
 

@@ -13,6 +13,7 @@
 #include "base/host_memory.h"
 #include "gl/egl_context.h"
 #include "gl/gpu_memory.h"
+#include "model/hidden_members.h"
 #include "render/clear_blocks.h"
 #include "render/compose_region.h"
 #include "render/draw_to_error.h"
@@ -253,18 +254,21 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
                                                          const geometry::CameraFrame& frame,
                                                          const std::optional<Region>& window,
                                                          const Preemption& preemption) {
-  const std::vector<bool> hidden = hidden_blocks(scene.model(), display.volumes, request.hidden_models);
+  const std::vector<bool> clear = clear_blocks(scene.model(), display.volumes);
+  const std::vector<bool> hidden_members = model::hidden_members(scene.model(), request.hidden_models);
+  const std::vector<uint32_t> roots = model::shown_roots(scene.model(), hidden_members);
   residency::ViewParameters parameters{frame,
                                        request.spacing,
                                        display.clipped ? &request.clip : nullptr,
                                        display.attributes,
                                        request.viewer != 0,
-                                       hidden.empty() ? nullptr : &hidden,
+                                       clear.empty() ? nullptr : &clear,
                                        request.rest_spacing,
                                        sides_of(display),
                                        ghost_spacing(display, request),
                                        display.glyph_reaches.empty() ? nullptr : &display.glyph_reaches};
   if (window) parameters.window = window_of(*window);
+  if (!hidden_members.empty()) parameters.roots = &roots;
   if (request.rest_spacing && scene.has_glyphs()) {
     parameters.items = &scene.glyphs();
     parameters.most_items = most_glyphs(request, motion_glyphs);
@@ -320,7 +324,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     frame,
                     region,
                     drawn,
-                    frame_constants(frame, drawn, request, {info.oriented && !variant.transparent, info.even}),
+                    frame_constants(frame, drawn, request, {scene.has_fronts() && !variant.transparent, info.even}),
                     variant,
                     &request,
                     display,

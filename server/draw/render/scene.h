@@ -34,6 +34,8 @@ class Scene {
 
   [[nodiscard]] const model::ModelFile& model() const { return *model_; }
   [[nodiscard]] const residency::ViewedModel& viewed() const { return viewed_; }
+  /// True if normals of some of its scans tell front from back.
+  [[nodiscard]] bool has_fronts() const { return has_fronts_; }
   /// The number of a block's kind in the table of kinds.
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return blocks_->kind_of(block); }
   /// True if it has blocks of a kind that is drawn as surfaces.
@@ -69,6 +71,7 @@ class Scene {
   std::vector<uint32_t> first_surfels_;
   std::vector<uint32_t> glyphs_;
   Kinds kinds_;
+  bool has_fronts_;
   std::list<ViewerHistory> viewers_;  ///< most recently seen first
 };
 

@@ -29,7 +29,7 @@ double value_at(const surfel::ScalarValues& values, size_t i) {
 DecodedSurfels::DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info, const model::ModelInfo& own)
     : block_(std::move(block)),
       curvature_(block_.scalars),
-      oriented_(info.oriented),
+      oriented_(own.oriented),
       color_bits_(info.color_bits),
       colored_(own.color_bits > 0),
       told_(own.scalar_names) {}
@@ -133,7 +133,7 @@ void DecodedSurfels::cover(const PickQuery& query, PixelHits& pixels) const {
   }
 }
 
-/// Unit; turned towards the eye if the model is not oriented.
+/// Unit; turned towards the eye if its scan is not oriented.
 glm::dvec3 DecodedSurfels::normal_of(const PickQuery& query, size_t surfel) const {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(block_.normals[surfel]));
   const bool turned = !oriented_ && glm::dot(normal, block_.position(surfel) - query.frame.eye) > 0;

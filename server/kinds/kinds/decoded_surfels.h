@@ -12,7 +12,8 @@ namespace surfcast::kinds {
 /// A decoded block of surfels for picking.
 class DecodedSurfels : public SourceBlock {
  public:
-  /// `own`: of the member that a block of a joined model is from; it has the colours and attributes that are told.
+  /// `own`: of the member that a block of a joined model is from; its normals may tell front from back, and it has
+  /// the colours and attributes that are told.
   DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info, const model::ModelInfo& own);
 
   [[nodiscard]] size_t bytes() const override;

@@ -40,7 +40,7 @@ inline constexpr double kSeenThrough = 0.5;
 
 /// What a picture can show of an item beside its colour.
 struct ItemLook {
-  glm::vec3 normal{0};    ///< world, unit; turned towards the eye if the model is not oriented
+  glm::vec3 normal{0};    ///< world, unit; turned towards the eye if its scan is not oriented
   float code = kNoClass;  ///< classification
 };
 

@@ -55,7 +55,7 @@ struct PickedValue {
 /// A surfel of the source, or an item of another kind, as stored in the model.
 struct PickedSurfel {
   glm::dvec3 position{0};            ///< world; exact for inputs whose coordinates lie on a grid
-  glm::dvec3 normal{0};              ///< unit; turned towards the eye if the model is not oriented
+  glm::dvec3 normal{0};              ///< unit; turned towards the eye if its scan is not oriented
   std::optional<glm::u8vec3> color;  ///< sRGB
   double radius = 0;                 ///< world units
   double distance = 0;               ///< from the eye, world units

@@ -28,8 +28,11 @@ bool may_be_drawn(const residency::PackedRun& run, const residency::PackedRun::R
 
 class SurfelHeader : public residency::BlockHeader {
  public:
-  explicit SurfelHeader(residency::PackedSurfels& packed)
-      : radius_(packed.radius), weight_(packed.weight), curved_(packed.curved), runs_(std::move(packed.runs)) {}
+  SurfelHeader(residency::PackedSurfels& packed, bool oriented)
+      : radius_(packed.radius),
+        weight_(packed.weight),
+        flags_((packed.curved ? SURFCAST_RUN_CURVED : 0) | (oriented ? 0 : SURFCAST_RUN_TWO_SIDED)),
+        runs_(std::move(packed.runs)) {}
 
   [[nodiscard]] glm::vec4 scale(int unit) const override {
     const auto scale_of = [](const residency::LogScale& s) {
@@ -42,8 +45,7 @@ class SurfelHeader : public residency::BlockHeader {
     for (const residency::PackedRun& run : runs_) {
       for (uint32_t i = 0; i < run.count; i += SURFCAST_CHUNK) {
         if (!may_be_drawn(run, run.chunks[i / SURFCAST_CHUNK], wanted)) continue;
-        const uint32_t flags = flags_of(run) | (curved_ ? SURFCAST_RUN_CURVED : 0);
-        runs.push_back({run.first + i, std::min<uint32_t>(run.count - i, SURFCAST_CHUNK), flags});
+        runs.push_back({run.first + i, std::min<uint32_t>(run.count - i, SURFCAST_CHUNK), flags_of(run) | flags_});
       }
     }
   }
@@ -51,7 +53,7 @@ class SurfelHeader : public residency::BlockHeader {
  private:
   residency::LogScale radius_;
   residency::LogScale weight_;
-  bool curved_;
+  uint32_t flags_;  ///< of all its runs
   std::vector<residency::PackedRun> runs_;
 };
 
@@ -61,10 +63,11 @@ Result<residency::PackedBlock> SurfelKind::load(const model::ModelFile& model, u
   const Result<model::DecodedBlock> decoded =
       model.decode(block, attributes ? model::WantedScalars::kDrawn : model::WantedScalars::kNone);
   if (!decoded) return fail(decoded.error());
+  const bool oriented = model.part(block).model.info().oriented;
   residency::PackedSurfels packed;  // a block that was made of points may have none
-  if (decoded->size() > 0) packed = residency::pack_block(*decoded, model.info().color_bits, model.info().oriented);
+  if (decoded->size() > 0) packed = residency::pack_block(*decoded, model.info().color_bits, oriented);
   if (attributes) residency::pack_attributes(*decoded, packed);
-  auto header = std::make_shared<const SurfelHeader>(packed);
+  auto header = std::make_shared<const SurfelHeader>(packed, oriented);
   return residency::PackedBlock{packed.lattice, std::move(packed.surfels), std::move(packed.attributes),
                                 packed.intensity, std::move(header)};
 }

@@ -14,8 +14,6 @@
 namespace surfcast::ldc {
 namespace {
 
-/// Largest ratio of coarse to fine surfels for which a coarser level is worth its bytes. On a surface the ratio is 1/4.
-constexpr double kLargestPart = 0.3;
 /// A level with at most this many surfels is kept whatever its ratio.
 constexpr size_t kFew = 1024;
 /// Factors on x, y and z that prefer z over y over x. They move the switch between images away from surfaces at 45
@@ -255,22 +253,22 @@ void snap(std::vector<CoarseSurfel>& surfels, const surfel::Grid& grid, const Oc
   std::transform(sorted.begin(), sorted.end(), surfels.begin(), [](const auto& entry) { return entry.second; });
 }
 
-bool few_enough(size_t coarse, size_t fine) {
+bool few_enough(size_t coarse, size_t fine, double largest_part) {
   return coarse <= kFew ||
-         (coarse <= kMaxCoarseSurfels && static_cast<double>(coarse) <= kLargestPart * static_cast<double>(fine));
+         (coarse <= kMaxCoarseSurfels && static_cast<double>(coarse) <= largest_part * static_cast<double>(fine));
 }
 
 }  // namespace
 
 CoarseCell reduce(std::span<const CoarseSurfel> surfels, const geometry::RootCube& root, const OctreeKey& cell,
-                  bool oriented) {
+                  bool oriented, double largest_part) {
   SURFCAST_EXPECTS(!surfels.empty());
   const double side = std::ldexp(root.side, -cell.depth);
   const glm::dvec3 min = root.min + glm::dvec3(cell.x, cell.y, cell.z) * side;
   for (int lines = kLdcLines;; lines /= 2) {
     const Cube cube{min, side / lines, lines};
     std::vector<CoarseSurfel> averages = resample(surfels, cube, oriented);
-    if (lines > 1 && !few_enough(averages.size(), surfels.size())) continue;
+    if (lines > 1 && !few_enough(averages.size(), surfels.size(), largest_part)) continue;
     const surfel::Grid grid{glm::dvec3(cube.spacing / kStepsPerRay), root.min};
     snap(averages, grid, cell, int64_t{lines} * kStepsPerRay);
     return {grid, static_cast<float>(surfel::kGridRadiusOverSpacing * cube.spacing), std::move(averages)};

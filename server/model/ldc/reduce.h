@@ -17,6 +17,9 @@ inline constexpr int kStepsPerRay = 16;
 /// The most surfels of a coarse block.
 inline constexpr size_t kMaxCoarseSurfels = 16384;
 
+/// Largest ratio of coarse to fine surfels for which a coarser level is worth its bytes. On a surface the ratio is 1/4.
+inline constexpr double kLargestPart = 0.3;
+
 /// The coarse surfels of one octree cell.
 struct CoarseCell {
   surfel::Grid grid;  ///< the lattice of their positions
@@ -32,10 +35,10 @@ struct CoarseCell {
 /// Scatter is averaged among itself and keeps its area. It is never merged into a surface. Its cubes are as wide as the
 /// rays are apart; twice as wide where such cubes would leave more than 0.3 of the scatter, because it fills a volume.
 ///
-/// If too many surfels remain (vegetation, layers of surface closer than the rays), the cell is resampled with twice
-/// the ray spacing, repeatedly. A surfel that is alone on its ray keeps its attributes; its position is rounded to the
-/// lattice. Deterministic.
+/// If too many surfels remain (vegetation, layers of surface closer than the rays), or more than `largest_part` of
+/// them, the cell is resampled with twice the ray spacing, repeatedly. A surfel that is alone on its ray keeps its
+/// attributes; its position is rounded to the lattice. Deterministic.
 CoarseCell reduce(std::span<const CoarseSurfel> surfels, const geometry::RootCube& root, const OctreeKey& cell,
-                  bool oriented);
+                  bool oriented, double largest_part = kLargestPart);
 
 }  // namespace surfcast::ldc

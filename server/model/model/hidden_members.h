@@ -12,7 +12,7 @@ namespace surfcast::model {
 /// For each member of a joined model whether it is among these names; empty if none is. Other names say nothing.
 std::vector<bool> hidden_members(const ModelFile& model, std::span<const std::string> names);
 
-/// The roots of the blocks of all members but those.
+/// The topmost blocks that stand for no hidden member, ascending: together they have all surfels of the others.
 std::vector<uint32_t> shown_roots(const ModelFile& model, const std::vector<bool>& hidden_members);
 
 }  // namespace surfcast::model

@@ -151,22 +151,81 @@ surfel::Grid placed_grid(const surfel::Grid& grid, const geometry::Box& bounds, 
   return {glm::dvec3(step), glm::dvec3(0)};
 }
 
-/// Adds the blocks of a member.
-void add_member(const Member& member, bool oriented, JoinedTables& tables) {
+/// The entries of the blocks of a member in the joined model. Parents are still those of the member.
+std::vector<ldc::BlockEntry> entries_of(const Member& member, JoinedTables& tables) {
   const ModelFile& model = *member.model;
-  const MemberOffsets offsets{static_cast<uint32_t>(tables.blocks.size()), static_cast<uint32_t>(tables.volumes.size()),
-                              static_cast<uint32_t>(tables.ellipsoids.size())};
-  tables.offsets.push_back(offsets);
   std::vector<uint8_t> kinds;
   for (const KindCount& kind : model.info().kinds) kinds.push_back(kind_number(kind.kind, tables.info.kinds));
-  for (size_t i = 0; i < model.blocks().size(); ++i) {
-    ldc::BlockEntry entry = model.blocks()[i];
-    if (!member.places.empty()) entry = placed(entry, member.places[i]);
-    if (entry.parent != ldc::BlockEntry::kNoParent) entry.parent += offsets.block;
-    if (!oriented && model.info().kinds[entry.kind].kind == kSurfelKind) entry.normals.reset();
-    entry.kind = kinds[entry.kind];
+  std::vector<ldc::BlockEntry> entries(model.blocks().begin(), model.blocks().end());
+  for (size_t i = 0; i < entries.size(); ++i) {
+    if (!member.places.empty()) entries[i] = placed(entries[i], member.places[i]);
+    entries[i].kind = kinds[entries[i].kind];
+  }
+  return entries;
+}
+
+/// The blocks of surfels without a parent.
+std::vector<TopBlock> top_blocks(std::span<const Member> members, std::span<const std::vector<ldc::BlockEntry>> entries,
+                                 const ModelInfo& info) {
+  std::vector<TopBlock> tops;
+  for (uint32_t member = 0; member < members.size(); ++member) {
+    const ldc::BlockTree& tree = members[member].model->tree();
+    for (const uint32_t root : tree.roots()) {
+      const ldc::BlockEntry& entry = entries[member][root];
+      if (info.kinds[entry.kind].kind != kSurfelKind) continue;
+      const bool leaf = tree.children(root).count == 0;
+      tops.push_back({entry, member, root, leaf, members[member].model->info().oriented});
+    }
+  }
+  return tops;
+}
+
+/// The numbers of the blocks of each member in the joined model.
+using BlockNumbers = std::vector<std::vector<uint32_t>>;
+constexpr uint32_t kNoNumber = UINT32_MAX;
+
+/// Adds the levels above the members, with their top blocks.
+void add_member_levels(const std::vector<TopBlock>& tops, JoinedTables& tables, BlockNumbers& numbers) {
+  MemberLevels levels = plan_member_levels(tops);
+  for (const MemberLevelNode& node : levels.nodes) {
+    if (node.top == MemberLevelNode::kShared) {
+      tables.parts.origins.push_back({BlockOrigin::kShared, node.shared});
+    } else {
+      const TopBlock& top = tops[node.top];
+      numbers[top.member][top.block] = static_cast<uint32_t>(tables.blocks.size());
+      tables.parts.origins.push_back({top.member, top.block});
+    }
+    tables.blocks.push_back(node.entry);
+  }
+  tables.parts.shared = std::move(levels.shared);
+}
+
+/// Adds the blocks of a member that have not been added. Parents precede their children.
+void add_other_blocks(uint32_t member, std::span<const ldc::BlockEntry> entries, JoinedTables& tables,
+                      std::vector<uint32_t>& numbers) {
+  for (uint32_t block = 0; block < entries.size(); ++block) {
+    if (numbers[block] != kNoNumber) continue;
+    numbers[block] = static_cast<uint32_t>(tables.blocks.size());
+    ldc::BlockEntry entry = entries[block];
+    if (entry.parent != ldc::BlockEntry::kNoParent) entry.parent = numbers[entry.parent];
+    tables.parts.origins.push_back({member, block});
     tables.blocks.push_back(entry);
   }
+}
+
+void add_blocks(std::span<const std::vector<ldc::BlockEntry>> entries, JoinedTables& tables) {
+  BlockNumbers numbers;
+  for (const std::vector<ldc::BlockEntry>& own : entries) numbers.emplace_back(own.size(), kNoNumber);
+  add_member_levels(top_blocks(tables.parts.members, entries, tables.info), tables, numbers);
+  for (uint32_t member = 0; member < entries.size(); ++member) {
+    add_other_blocks(member, entries[member], tables, numbers[member]);
+  }
+}
+
+/// Adds volumes and sources of ellipsoids of a member.
+void add_sources(const ModelFile& model, JoinedTables& tables) {
+  tables.parts.offsets.push_back(
+      {static_cast<uint32_t>(tables.volumes.size()), static_cast<uint32_t>(tables.ellipsoids.size())});
   tables.volumes.insert(tables.volumes.end(), model.volumes().begin(), model.volumes().end());
   tables.ellipsoids.insert(tables.ellipsoids.end(), model.ellipsoid_sources().begin(), model.ellipsoid_sources().end());
 }
@@ -206,17 +265,6 @@ void count_items(std::span<const Member> members, ModelInfo& info) {
   }
 }
 
-Status check_place(const Member& member) {
-  if (member.places.empty()) return {};
-  const auto& kinds = member.model->info().kinds;
-  const bool surfels = std::ranges::all_of(kinds, [](const KindCount& kind) { return kind.kind == kSurfelKind; });
-  const bool curved = surfel::has_curvature(member.model->info().scalar_names);
-  if (surfels && !curved) return {};
-  return fail(ErrorKind::kUnsupported, member.name +
-                                           ": lies in another coordinate system than the first model, and only "
-                                           "scans without curvature can be brought into that");
-}
-
 Status check_members(std::span<const Member> members) {
   if (members.size() > kMaxMembers) {
     return fail(ErrorKind::kLimit, "at most " + std::to_string(kMaxMembers) + " models can be shown together");
@@ -248,14 +296,31 @@ bool is_left_out(const std::string& name, const DecodedBlock& block) {
 
 }  // namespace
 
-Result<JoinedTables> join_tables(std::span<const Member> members) {
+Status check_place(const Member& member) {
+  if (member.places.empty()) return {};
+  const auto& kinds = member.model->info().kinds;
+  const bool surfels = std::ranges::all_of(kinds, [](const KindCount& kind) { return kind.kind == kSurfelKind; });
+  const bool curved = surfel::has_curvature(member.model->info().scalar_names);
+  if (surfels && !curved) return {};
+  return fail(ErrorKind::kUnsupported, member.name +
+                                           ": lies in another coordinate system than the first model, and only "
+                                           "scans without curvature can be brought into that");
+}
+
+Result<JoinedTables> join_tables(std::vector<Member> members) {
   SURFCAST_EXPECTS(!members.empty());
   if (Status status = check_members(members); !status) return fail(std::move(status.error()));
   JoinedTables tables;
   describe(members, tables);
-  for (const Member& member : members) add_member(member, tables.info.oriented, tables);
+  std::vector<std::vector<ldc::BlockEntry>> entries;
+  for (const Member& member : members) {
+    entries.push_back(entries_of(member, tables));
+    add_sources(*member.model, tables);
+  }
+  tables.parts.members = std::move(members);
+  add_blocks(entries, tables);
   count_blocks(tables.blocks, tables.info);
-  if (tables.info.in_place) count_items(members, tables.info);
+  if (tables.info.in_place) count_items(tables.parts.members, tables.info);
   return tables;
 }
 

@@ -24,8 +24,8 @@ struct ModelFile::State {
   ModelInfo info;
   std::shared_ptr<const Directory> directory;
   ldc::BlockTree tree;
-  std::vector<Member> members{};         ///< of a joined model, which has no source and no blocks in its directory
-  std::vector<MemberOffsets> offsets{};  ///< of each member
+  /// Of a joined model, which has no source and no blocks in its directory; otherwise null.
+  std::shared_ptr<const JoinedParts> parts{};
 };
 
 namespace {
@@ -186,17 +186,18 @@ ModelFile ModelFile::of_blocks(const std::filesystem::path& path, ModelInfo info
 }
 
 Result<ModelFile> ModelFile::join(std::vector<Member> members) {
-  Result<JoinedTables> tables = join_tables(members);
+  Result<JoinedTables> tables = join_tables(std::move(members));
   if (!tables) return fail(std::move(tables.error()));
+  auto parts = std::make_shared<const JoinedParts>(std::move(tables->parts));
   std::string path;
-  for (const Member& member : members) path += (path.empty() ? "" : "+") + member.name;
+  for (const Member& member : parts->members) path += (path.empty() ? "" : "+") + member.name;
   auto directory = std::make_shared<Directory>();
   directory->volumes = std::move(tables->volumes);
   directory->ellipsoids = std::move(tables->ellipsoids);
-  auto provider = std::make_unique<const JoinedBlocks>(members, tables->offsets, tables->info, tables->scalars);
-  return ModelFile(std::make_unique<State>(State{next_id(), path, std::move(provider), std::move(tables->info),
-                                                 std::move(directory), ldc::BlockTree(std::move(tables->blocks)),
-                                                 std::move(members), std::move(tables->offsets)}));
+  auto provider = std::make_unique<const JoinedBlocks>(parts, tables->info, tables->scalars);
+  return ModelFile(
+      std::make_unique<State>(State{next_id(), path, std::move(provider), std::move(tables->info), std::move(directory),
+                                    ldc::BlockTree(std::move(tables->blocks)), std::move(parts)}));
 }
 
 uint64_t ModelFile::id() const {
@@ -224,18 +225,30 @@ std::span<const ScalarColumn> ModelFile::scalars() const {
 }
 
 std::span<const Member> ModelFile::members() const {
-  return state_->members;
+  if (!state_->parts) return {};
+  return state_->parts->members;
 }
 
 Part ModelFile::part(uint32_t block) const {
   SURFCAST_EXPECTS(block < blocks().size());
-  if (state_->members.empty()) return {*this, block};
-  return part_of(state_->members, state_->offsets, block);
+  if (!state_->parts) return {*this, block};
+  const BlockOrigin& origin = state_->parts->origins[block];
+  if (origin.member == BlockOrigin::kShared) return {*this, block};
+  const MemberOffsets& first = state_->parts->offsets[origin.member];
+  return {*state_->parts->members[origin.member].model, origin.index, origin.member, first.volume, first.ellipsoids};
+}
+
+std::bitset<kMaxMembers> ModelFile::members_of(uint32_t block) const {
+  SURFCAST_EXPECTS(block < blocks().size());
+  if (!state_->parts) return {};
+  const BlockOrigin& origin = state_->parts->origins[block];
+  if (origin.member == BlockOrigin::kShared) return state_->parts->shared[origin.index].members;
+  return std::bitset<kMaxMembers>().set(origin.member);
 }
 
 BrickRecord ModelFile::brick(size_t block) const {
   SURFCAST_EXPECTS(block < blocks().size() && state_->info.kinds[blocks()[block].kind].kind == kGridKind);
-  if (!state_->members.empty()) {
+  if (state_->parts) {
     const Part own = part(static_cast<uint32_t>(block));
     BrickRecord brick = own.model.brick(own.block);
     brick.volume += own.first_volume;
@@ -265,22 +278,20 @@ Result<Georeference> ModelFile::georeference() const {
 }
 
 Error ModelFile::named(size_t block, const Error& error) const {
-  if (!state_->members.empty()) {
-    const Part own = part(static_cast<uint32_t>(block));
-    return own.model.named(own.block, error);
-  }
+  const Part own = part(static_cast<uint32_t>(block));
+  if (&own.model != this) return own.model.named(own.block, error);
   return {error.kind, state_->path.string() + ": block " + std::to_string(block) + ": " + error.message};
 }
 
 Result<StoredBlock> ModelFile::stored(size_t block) const {
   Result<StoredBlock> stored = state_->provider->stored(block);
-  if (!state_->members.empty()) return stored;  // its member has named an error
+  if (state_->parts) return stored;  // its member has named an error
   return stored.map_error([&](const Error& error) { return named(block, error); });
 }
 
 Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {
   Result<DecodedBlock> decoded = state_->provider->decode(block, scalars);
-  if (!state_->members.empty()) return decoded;
+  if (state_->parts) return decoded;
   return decoded.map_error([&](const Error& error) { return named(block, error); });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -78,17 +79,19 @@ struct Member {
   std::vector<glm::dmat4x3> places{};
 };
 
-/// A block as a member of a joined model has it. A plain model is its own only part.
+/// A block as a member of a joined model has it. A plain model is its own only part; so is a joined model for the
+/// blocks that stand for several members.
 struct Part {
   const ModelFile& model;
   uint32_t block = 0;             ///< of the member
-  uint32_t member = 0;            ///< index of the member
+  uint32_t member = 0;            ///< index of the member; 0 if it is no part of one
   uint32_t first_volume = 0;      ///< the number of the member's first volume among those of the joined model
   uint32_t first_ellipsoids = 0;  ///< likewise, of its first source of ellipsoids
 };
 
-/// An open model: a file, blocks that something else provides, or several models that are shown as one, the forest of
-/// all their blocks. All methods are const and safe to call from several threads at once.
+/// An open model: a file, blocks that something else provides, or several models that are shown as one: all their
+/// blocks, and above those of scans with many surfels coarser levels that are made when they are needed. All methods
+/// are const and safe to call from several threads at once.
 class ModelFile {
  public:
   static Result<ModelFile> open(const std::filesystem::path& path);
@@ -124,6 +127,8 @@ class ModelFile {
   [[nodiscard]] std::span<const Member> members() const;
   /// Where kinds that number their volumes or sources, or state limits, read a block.
   [[nodiscard]] Part part(uint32_t block) const;
+  /// The members of a joined model that a block stands for; none of a file.
+  [[nodiscard]] std::bitset<kMaxMembers> members_of(uint32_t block) const;
   /// The place of a block of the kind "grid". It lies within its volume, and its parent stands for it.
   [[nodiscard]] BrickRecord brick(size_t block) const;
   /// The sources of the blocks of the kind "ellipsoid"; none in most models.

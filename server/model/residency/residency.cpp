@@ -24,7 +24,7 @@ selection::BlockSelection Residency::select(const ViewedModel& model, const View
   const selection::SelectionCriteria limits{parameters.spacing,       pool_.usable_surfels(), BlockPool::kPageTexels,
                                             parameters.clip,          parameters.hidden,      parameters.sides,
                                             parameters.ghost_spacing, parameters.reaches,     parameters.items,
-                                            parameters.most_items,    parameters.window};
+                                            parameters.most_items,    parameters.window,      parameters.roots};
   return selection::select_blocks(model.tree, parameters.frame, limits, residents(model, parameters.attributes),
                                   was_refined);
 }
@@ -38,10 +38,11 @@ std::vector<uint32_t> Residency::missing(const ViewedModel& model, std::span<con
 }
 
 /// The roots that have children: they represent everything that may show while no finer block is resident.
-std::vector<uint32_t> Residency::coarse_roots(const ViewedModel& model, const std::vector<bool>* hidden) const {
+std::vector<uint32_t> Residency::coarse_roots(const ViewedModel& model, const ViewParameters& parameters) const {
   std::vector<uint32_t> coarse;
-  for (const uint32_t root : model.tree.tree.roots()) {
-    if (hidden != nullptr && (*hidden)[root]) continue;
+  const std::span<const uint32_t> all = model.tree.tree.roots();
+  for (const uint32_t root : parameters.roots == nullptr ? all : std::span<const uint32_t>(*parameters.roots)) {
+    if (parameters.hidden != nullptr && (*parameters.hidden)[root]) continue;
     if (model.tree.tree.children(root).count > 0) coarse.push_back(root);
   }
   return coarse;
@@ -108,7 +109,7 @@ Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const
                                                  const Preemption& preemption) {
   PreparedView view;
   pool_.begin_frame();
-  const std::vector<uint32_t> roots = missing(model, coarse_roots(model, parameters.hidden), parameters.attributes);
+  const std::vector<uint32_t> roots = missing(model, coarse_roots(model, parameters), parameters.attributes);
   if (Status status = load(model, roots, parameters.attributes, preemption, view); !status)
     return fail(std::move(status.error()));
 
@@ -170,7 +171,7 @@ std::vector<selection::WantedBlock> Residency::blocks_to_load(const ViewParamete
 /// The blocks to load next: the roots, then the missing blocks of the view.
 std::vector<uint32_t> Residency::load_requests(const ViewedModel& model, const ViewParameters& parameters,
                                                const selection::BlockSelection& selection) const {
-  std::vector<uint32_t> blocks = missing(model, coarse_roots(model, parameters.hidden), parameters.attributes);
+  std::vector<uint32_t> blocks = missing(model, coarse_roots(model, parameters), parameters.attributes);
   std::erase_if(blocks, [&](uint32_t block) { return damaged_.contains({model.source->id(), block}); });
   add(model, blocks_to_load(parameters, selection), blocks);
   if (blocks.empty()) add(model, selection.wanted, blocks);  // substitutes for damaged blocks

@@ -37,7 +37,8 @@ struct ViewParameters {
   /// See SelectionCriteria; outlives the preparation. A picture at rest has no limit.
   const std::vector<uint32_t>* items = nullptr;
   uint64_t most_items = std::numeric_limits<uint64_t>::max();
-  std::optional<selection::Window> window{};  ///< see SelectionCriteria
+  std::optional<selection::Window> window{};     ///< see SelectionCriteria
+  const std::vector<uint32_t>* roots = nullptr;  ///< see SelectionCriteria; outlives the preparation
 };
 
 /// The blocks that a picture is drawn from, and the cost of making them resident.
@@ -91,7 +92,7 @@ class Residency {
                                                  std::span<const uint32_t> was_refined) const;
   [[nodiscard]] std::vector<uint32_t> missing(const ViewedModel& model, std::span<const uint32_t> blocks,
                                               bool attributes) const;
-  [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model, const std::vector<bool>* hidden) const;
+  [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model, const ViewParameters& parameters) const;
   void add(const ViewedModel& model, std::span<const selection::WantedBlock> wanted,
            std::vector<uint32_t>& blocks) const;
   [[nodiscard]] static std::vector<selection::WantedBlock> blocks_to_load(const ViewParameters& parameters,

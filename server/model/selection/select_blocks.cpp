@@ -103,6 +103,10 @@ class Selector {
     return criteria_.clip != nullptr && !criteria_.clip->may_show(tree_.hulls[block].centres);
   }
 
+  [[nodiscard]] std::span<const uint32_t> roots() const {
+    return criteria_.roots == nullptr ? tree_.tree.roots() : std::span<const uint32_t>(*criteria_.roots);
+  }
+
   template <typename Action>
   void for_children(uint32_t block, Action action) const {
     const ldc::BlockTree::Children children = tree_.tree.children(block);
@@ -114,7 +118,8 @@ class Selector {
     State& state = states_[block];
     state.fate = Fate::kKept;
     state.spacing = projected_spacing(blocks_[block], frame_);
-    if (const uint32_t parent = blocks_[block].parent; parent != ldc::BlockEntry::kNoParent) {
+    const uint32_t parent = blocks_[block].parent;
+    if (parent != ldc::BlockEntry::kNoParent && states_[parent].fate != Fate::kUnseen) {
       state.urgency = std::min(states_[parent].urgency, states_[parent].spacing);
     }
     seen_.push_back(block);
@@ -125,7 +130,7 @@ class Selector {
   }
 
   void refine() {
-    for (const uint32_t root : tree_.tree.roots()) {
+    for (const uint32_t root : roots()) {
       if (!in_view(root)) continue;
       keep(root);
       used_ += cost(root);
@@ -201,7 +206,7 @@ class Selector {
   /// Top down: selects the first blocks on each path that can be drawn.
   void draw() {
     std::vector<bool> reached(blocks_.size());
-    for (const uint32_t root : tree_.tree.roots()) reached[root] = true;
+    for (const uint32_t root : roots()) reached[root] = true;
     for (const uint32_t block : seen_) {
       const State& state = states_[block];
       if (state.fate == Fate::kKept) selection_.target.push_back(block);

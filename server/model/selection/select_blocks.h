@@ -47,6 +47,8 @@ struct SelectionCriteria {
   const std::vector<uint32_t>* items = nullptr;
   uint64_t most_items = std::numeric_limits<uint64_t>::max();  ///< a second budget, of blocks that fill space
   std::optional<Window> window{};  ///< the part of the picture that is to be drawn; none: all of it
+  /// The blocks from which refinement starts: none is below another one. Null: the roots of the tree.
+  const std::vector<uint32_t>* roots = nullptr;
 };
 
 /// A block that is not resident and would refine the picture.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -97,7 +96,7 @@ Result<crs::Transformation> way_between(const model::CoordinateSystem& from, con
   return crs::Transformation::between(*source, *target, bounds);
 }
 
-Status place(const model::CoordinateSystem& from, const model::CoordinateSystem& to, model::Member& member) {
+Status place_in(const model::CoordinateSystem& from, const model::CoordinateSystem& to, model::Member& member) {
   const Result<crs::Transformation> way = way_between(from, to, member.model->info().bounds);
   if (!way) return fail(error_about(member, way.error()));
   return place_blocks(*way, member);
@@ -113,15 +112,19 @@ bool are_same(const model::CoordinateSystem& a, const model::CoordinateSystem& b
 
 }  // namespace
 
+Status MemberPlacer::place(model::Member& member) {
+  const Result<model::Georeference> georeference = member.model->georeference();
+  if (!georeference) return fail(georeference.error());
+  if (!georeference->known()) return {};
+  if (!common_) common_ = georeference->system;
+  if (are_same(georeference->system, *common_)) return {};
+  return place_in(georeference->system, *common_, member);
+}
+
 Status place_members(std::vector<model::Member>& members) {
-  std::optional<model::CoordinateSystem> common;
+  MemberPlacer placer;
   for (model::Member& member : members) {
-    const Result<model::Georeference> georeference = member.model->georeference();
-    if (!georeference) return fail(georeference.error());
-    if (!georeference->known()) continue;
-    if (!common) common = georeference->system;
-    if (are_same(georeference->system, *common)) continue;
-    if (Status placed = place(georeference->system, *common, member); !placed) return placed;
+    if (Status placed = placer.place(member); !placed) return placed;
   }
   return {};
 }
