@@ -22,6 +22,13 @@ void add_colorize_command(CLI::App& app, Status& outcome);
 /// leaves how it went in `outcome`.
 void add_export_command(CLI::App& app, Status& outcome);
 
+/// The name of the command `gpus`, and a word of its lines.
+inline constexpr const char* kGpusCommand = "gpus";
+inline constexpr const char* kHardwareDevice = "hardware";
+
+/// Adds `gpus`: a line for each EGL device, "0 hardware: NAME". The command leaves how it went in `outcome`.
+void add_gpus_command(CLI::App& app, Status& outcome);
+
 /// Adds `inspect MODEL [--json] [--verify]`: what is in a model. The command leaves how it went in `outcome`.
 void add_inspect_command(CLI::App& app, Status& outcome);
 
@@ -32,8 +39,8 @@ void add_pick_command(CLI::App& app, Status& outcome);
 /// command leaves how it went in `outcome`.
 void add_render_command(CLI::App& app, Status& outcome);
 
-/// Adds `serve [PATH...] [--listen HOST:PORT] [--gpu N] ...`: serves models until SIGINT or SIGTERM. The command leaves
-/// how it went in `outcome`.
+/// Adds `serve [PATH...] [--listen HOST:PORT] [--gpu N,...|all] ...`: serves models until SIGINT or SIGTERM. The
+/// command leaves how it went in `outcome`.
 void add_serve_command(CLI::App& app, Status& outcome);
 
 /// Adds `healthcheck [--url HOST:PORT]`: whether a server answers there.

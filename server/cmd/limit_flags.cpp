@@ -220,9 +220,6 @@ void add_annotation_flags(CLI::App& command, net::AnnotationConfig& annotations)
 }
 
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer) {
-  command.add_option("--gpu", renderer.gpu, "Index of the EGL device (default: the first hardware device)")
-      ->envname(protocol::environment_name("gpu"))
-      ->check(CLI::Range(0, 63));
   add_size(command, "gpu-memory", renderer.gpu_bytes,
            "For surfels on the GPU (default: a quarter of what is free there, in software an eighth of the host's). "
            "More: less for frames and other programs; less: coarser pictures of large scans",

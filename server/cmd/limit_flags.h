@@ -34,7 +34,7 @@ void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads);
 void add_annotation_flags(CLI::App& command, net::AnnotationConfig& annotations);
 /// `--uploads` and its limits.
 void add_upload_flags(CLI::App& command, net::UploadConfig& uploads);
-/// `--gpu`, the memory of the renderer and its threads.
+/// The memory of the renderer and its threads.
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer);
 /// The processes that draw and decode.
 void add_worker_flags(CLI::App& command, WorkerFlags& worker);

@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   surfcast::cmd::add_build_step_commands(app, outcome);
   surfcast::cmd::add_colorize_command(app, outcome);
   surfcast::cmd::add_export_command(app, outcome);
+  surfcast::cmd::add_gpus_command(app, outcome);
   surfcast::cmd::add_inspect_command(app, outcome);
   surfcast::cmd::add_serve_command(app, outcome);
   surfcast::cmd::add_render_command(app, outcome);

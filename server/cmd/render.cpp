@@ -71,7 +71,7 @@ Status render(const RenderCommand& command) {
       service::catalogue_renderers(models, service::local_renderers(command.renderer), service::ShaderWarmUp::kOff),
       command.limits);
   if (!service) return fail(service.error());
-  log_device((*service)->device(), command.renderer);
+  log_device((*service)->devices().front(), command.renderer);
   return protocol::draw_and_save(command.flags, *request,
                                  [&](const wire::DrawPicture& draw) { return draw_and_wait(**service, draw); });
 }
@@ -83,6 +83,10 @@ void add_render_command(CLI::App& app, Status& outcome) {
   CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model or scan, or the frames of a camera path");
   sub->add_option("MODEL", command->models, "Model file, its URL, or scan; several are shown together")->required();
   command->flags.add_to(*sub);
+  sub->add_option("--gpu", command->renderer.gpu,
+                  "EGL device to draw on (default: the first hardware device; the command gpus lists the devices)")
+      ->envname(protocol::environment_name("gpu"))
+      ->check(CLI::Range(0, 63));
   add_renderer_flags(*sub, command->renderer);
   add_cache_flags(*sub, command->cache);
   add_picture_flags(*sub, command->limits);

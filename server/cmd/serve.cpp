@@ -24,6 +24,7 @@
 #include "builder/input_files.h"
 #include "cmd/commands.h"
 #include "cmd/find_models.h"
+#include "cmd/gpu_flag.h"
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
 #include "cmd/program_builder.h"
@@ -56,6 +57,7 @@ struct ServeCommand {
   std::filesystem::path viewer;
   net::SiteLimits viewer_limits;
   render::RendererConfig renderer;
+  GpuSelection gpus;
   WorkerFlags worker;
   service::ServiceLimits service;
   net::ServerConfig server;
@@ -175,15 +177,24 @@ void allow_shader_cache(const ScanCacheConfig& cache, worker::WorkerConfig& conf
   }
 }
 
+/// What is drawn on one of the devices. Those of one machine share its memory.
+render::RendererConfig renderer_on(int device, size_t devices, render::RendererConfig config) {
+  config.gpu = device;
+  config.sharers = static_cast<unsigned>(devices);
+  if (config.host_bytes) *config.host_bytes /= devices;
+  return config;
+}
+
 /// Where pictures are drawn: in a worker process, or in this one.
-Result<service::ModelRendererFactory> make_renderers(const ServeCommand& command, worker::WorkerCounts& counts,
-                                                     std::function<void()> on_reset) {
-  if (command.worker.workers == 0) return service::local_renderers(command.renderer, std::move(on_reset));
+Result<service::ModelRendererFactory> make_renderers(const ServeCommand& command,
+                                                     const render::RendererConfig& renderer,
+                                                     worker::WorkerCounts& counts, std::function<void()> on_reset) {
+  if (command.worker.workers == 0) return service::local_renderers(renderer, std::move(on_reset));
   Result<std::vector<std::string>> program = worker_command(kRenderWorker);
   if (!program) return fail(program.error());
   worker::WorkerConfig config;
   config.command = std::move(*program);
-  config.renderer = command.renderer;
+  config.renderer = renderer;
   config.log_format = command.log_format;
   config.sandbox = !command.worker.no_sandbox;
   config.readable = command.worker.readable;
@@ -247,7 +258,27 @@ std::optional<service::Drawers> store_drawers(const ServeCommand& command, const
                                                        warm_up_of(command), service::ModelPlace::kStore)};
 }
 
+/// Who draws on each of the devices.
+Result<std::vector<service::FrameRendererFactory>> make_drawers(const ServeCommand& command,
+                                                                const std::vector<int>& devices,
+                                                                const service::ModelCatalogue& models,
+                                                                const ModelPlaces& places, worker::WorkerCounts& counts,
+                                                                const std::function<void()>& on_reset) {
+  const auto own_place = places.files ? service::ModelPlace::kFile : service::ModelPlace::kAnywhere;
+  std::vector<service::FrameRendererFactory> drawers;
+  for (const int device : devices) {
+    Result<service::ModelRendererFactory> renderers =
+        make_renderers(command, renderer_on(device, devices.size(), command.renderer), counts, on_reset);
+    if (!renderers) return fail(std::move(renderers.error()));
+    drawers.push_back(service::catalogue_renderers(models, std::move(*renderers), warm_up_of(command), own_place));
+  }
+  return drawers;
+}
+
 Status serve(ServeCommand command) {
+  const Result<std::vector<int>> devices = devices_of(command.gpus);
+  if (!devices) return fail(devices.error());
+  command.renderer.gpu = devices->front();
   const ModelPlaces places = places_of(command);
   draw_stores_here(command, places);
   Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer, command.viewer_limits);
@@ -272,19 +303,21 @@ Status serve(ServeCommand command) {
   };
   worker::WorkerCounts workers;
   worker::WorkerCounts query_workers;
-  Result<service::ModelRendererFactory> renderers = make_renderers(command, workers, on_reset);
-  if (!renderers) return fail(renderers.error());
+  Result<std::vector<service::FrameRendererFactory>> drawers =
+      make_drawers(command, *devices, models, places, workers, on_reset);
+  if (!drawers) return fail(drawers.error());
   Result<std::shared_ptr<service::ModelQueries>> queries = make_queries(command, query_workers);
   if (!queries) return fail(queries.error());
-  const auto own_place = places.files ? service::ModelPlace::kFile : service::ModelPlace::kAnywhere;
-  const auto service = service::RenderService::start(
-      models, service::catalogue_renderers(models, std::move(*renderers), warm_up_of(command), own_place),
-      command.service, std::move(*queries), store_drawers(command, models, places, on_reset));
+  service::FrameRendererFactory first = std::move(drawers->front());
+  drawers->erase(drawers->begin());
+  const auto service =
+      service::RenderService::start(models, std::move(first), command.service, std::move(*queries),
+                                    store_drawers(command, models, places, on_reset), std::move(*drawers));
   if (!service) return fail(service.error());
   if (command.worker.workers > 0) {
     command.server.workers = [&] { return net::WorkerGauges{gauges_of(workers), gauges_of(query_workers)}; };
   }
-  log_device((*service)->device(), command.renderer);
+  for (const picture::DeviceInfo& device : (*service)->devices()) log_device(device, command.renderer);
   add_machine_name(command.server.hosts);
   ScanBuilds* builder = nullptr;  // set before the server runs
   net::UploadConfig& uploads = command.server.uploads;
@@ -365,6 +398,7 @@ void add_serve_command(CLI::App& app, Status& outcome) {
       ->type_name("NUMBER")
       ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
   add_tls_flags(*sub, *command);
+  add_gpus_flag(*sub, command->gpus);
   add_renderer_flags(*sub, command->renderer);
   sub->add_flag("--no-shader-warm-up", command->no_shader_warm_up,
                 "Compile shaders when a picture needs them, not before: an idle server then uses no processor, and the "

@@ -81,16 +81,23 @@ TEST_F(ServeTest, AReaderOfTheLogThatGoesAwayDoesNotEndTheServer) {
   EXPECT_EQ(end(SIGTERM), 0) << "it says that it stops, and nobody reads it";
 }
 
-/// The child of a server whose command line meets a condition; -1: there is none.
-pid_t child_of(pid_t server, const std::function<bool(const std::string& command)>& is_meant) {
+/// The children of a server whose command lines meet a condition.
+std::vector<pid_t> children_of(pid_t server, const std::function<bool(const std::string& command)>& is_meant) {
+  std::vector<pid_t> children;
   for (const fs::directory_entry& process : fs::directory_iterator("/proc")) {
     const std::string name = process.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const std::string status = content(process.path() / "status");
     const bool child = status.find("\nPPid:\t" + std::to_string(server) + "\n") != std::string::npos;
-    if (child && is_meant(content(process.path() / "cmdline"))) return std::stoi(name);
+    if (child && is_meant(content(process.path() / "cmdline"))) children.push_back(std::stoi(name));
   }
-  return -1;
+  return children;
+}
+
+/// One of them; -1: there is none.
+pid_t child_of(pid_t server, const std::function<bool(const std::string& command)>& is_meant) {
+  const std::vector<pid_t> children = children_of(server, is_meant);
+  return children.empty() ? -1 : children.front();
 }
 
 /// The process that draws for a server, or that answers for it ("query-worker"); -1: there is none.
@@ -112,6 +119,36 @@ TEST_F(ServeTest, ARenderWorkerThatIsKilledIsReplaced) {
     EXPECT_TRUE(content(file("drawn.png")) == drawn);
   }
   EXPECT_NE(get("/metrics").find("\nsurfcast_workers_ended_total 3\n"), std::string::npos);
+}
+
+/// One software device stands for two GPUs.
+TEST_F(ServeTest, TwoGpusHaveAWorkerEachAndDrawAllModels) {
+  const std::string devices = client::run_program(SURFCAST_SERVER " gpus").output;
+  if (devices.starts_with("EGL lists no devices")) GTEST_SKIP() << devices;
+  ASSERT_TRUE(devices.starts_with("0 software: ") || devices.starts_with("0 hardware: ")) << devices;
+  std::string scans;
+  for (const char* const name : {"a", "b", "c", "d", "e", "f"}) {
+    const fs::path scan = folder_ / (std::string(name) + ".ply");
+    fs::copy_file(scan_, scan);
+    scans += " " + scan.string();
+  }
+  serve("--gpu 0,0 --gpu-memory 64M --host-memory 64M" + scans);
+  const auto workers = [this] {
+    return children_of(server_, [](const auto& command) { return command.find("render-worker") != std::string::npos; });
+  };
+  ASSERT_EQ(workers().size(), 2U);
+  const std::string metrics = get("/metrics");
+  EXPECT_NE(metrics.find("\nsurfcast_gpu_memory_budget_bytes 134217728\n"), std::string::npos) << "of each";
+  EXPECT_NE(metrics.find("\nsurfcast_host_memory_budget_bytes 67108864\n"), std::string::npos) << "of both";
+  ASSERT_TRUE(draws("a"));
+  const std::string drawn = content(file("drawn.png"));
+  for (const pid_t worker : workers()) ::kill(worker, SIGKILL);
+  for (const char* const name : {"b", "c", "d", "e", "f", "a"}) {
+    ASSERT_TRUE(draws(name));
+    EXPECT_TRUE(content(file("drawn.png")) == drawn) << name;
+  }
+  EXPECT_EQ(workers().size(), 2U) << "each has drawn some";
+  EXPECT_EQ(end(SIGTERM), 0);
 }
 
 TEST_F(ServeTest, AQueryWorkerThatIsKilledIsReplacedAndAnswersAsTheServerWould) {
@@ -508,8 +545,8 @@ TEST_F(ServeUploadsTest, AScanThatCannotBeBuiltIsListedWithItsReason) {
 }
 
 TEST_F(ServeTest, WrongCommandLinesEndWithTwo) {
-  for (const std::string arguments : {"serve --listen nowhere", "serve --gpu -1", "render a.surf",
-                                      "render a.surf --output a.gif", "healthcheck --url x"}) {
+  for (const std::string arguments : {"serve --listen nowhere", "serve --gpu -1", "serve --gpu 0,", "serve --gpu some",
+                                      "render a.surf", "render a.surf --output a.gif", "healthcheck --url x"}) {
     EXPECT_EQ(client::run_program(SURFCAST_SERVER " " + arguments + " 2>&1").code, 2) << arguments;
   }
 }

@@ -707,9 +707,9 @@ TEST_F(SurfcastdTest, TellsItsVersion) {
 }
 
 constexpr const char* kCommands =
-    "build, build-blocks, build-merge, build-part, build-plan, build-signs, colorize, export, healthcheck, inspect, "
-    "pick, "
-    "render, serve";
+    "build, build-blocks, build-merge, build-part, build-plan, build-signs, colorize, export, gpus, healthcheck, "
+    "inspect, "
+    "pick, render, serve";
 
 TEST_F(SurfcastdTest, AWrongCommandIsAnsweredWithTheRightOnes) {
   const Answer answer = run("bild scan.ply");

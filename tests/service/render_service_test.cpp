@@ -1,15 +1,19 @@
 #include "service/render_service.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <future>
+#include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "service/render_service_fixture.h"
+#include "service/renderer_choice.h"
 
 namespace surfcast::service {
 namespace {
@@ -292,6 +296,94 @@ TEST_F(RenderServiceTest, RemoteModelsHaveARendererOfTheirOwnThatHoldsUpNobodyEl
   EXPECT_FALSE(hanging.second.get());
   EXPECT_FALSE(waiting.second.get());
   EXPECT_EQ(control_->drawn, 1);
+}
+
+/// Three renderers of the models "cube", "teapot" and "noise".
+class SeveralRenderersTest : public RenderServiceTest {
+ protected:
+  void start_three(ServiceLimits limits = {}) {
+    std::vector<FrameRendererFactory> more{fake_renderers(controls_[1]), fake_renderers(controls_[2])};
+    auto started =
+        RenderService::start(models_, fake_renderers(controls_[0]), limits, nullptr, std::nullopt, std::move(more));
+    ASSERT_TRUE(started);
+    service_ = std::move(*started);
+  }
+  [[nodiscard]] int drawn_in_all() const {
+    int drawn = 0;
+    for (const auto& control : controls_) drawn += control->drawn;
+    return drawn;
+  }
+  FakeRendererControl& first_of(const std::string& model) {
+    return *controls_.at(rank_renderers(model, controls_.size()).first);
+  }
+  FakeRendererControl& second_of(const std::string& model) {
+    return *controls_.at(rank_renderers(model, controls_.size()).second);
+  }
+
+  std::array<std::shared_ptr<FakeRendererControl>, 3> controls_{control_, std::make_shared<FakeRendererControl>(),
+                                                                std::make_shared<FakeRendererControl>()};
+};
+
+TEST_F(SeveralRenderersTest, DrawEachModelOnItsOwn) {
+  start_three();
+  EXPECT_EQ(service_->devices().size(), 3U);
+  for (int i = 0; i < 5; ++i) {
+    for (const char* const model : {"cube", "teapot", "noise"}) EXPECT_TRUE(draw(1, job_for(model)).second.get());
+  }
+  service_.reset();
+  for (const char* const model : {"cube", "teapot", "noise"}) {
+    EXPECT_EQ(std::ranges::count(first_of(model).order, model), 5) << model;
+  }
+}
+
+TEST_F(SeveralRenderersTest, AHotModelIsDrawnByTwo) {
+  for (const auto& control : controls_) control->slow = true;
+  start_three();
+  std::vector<std::future<Result<EncodedPicture>>> pictures;
+  for (int i = 0; i < 12; ++i) pictures.push_back(draw(1, job_for("cube")).second);
+  while (first_of("cube").drawn == 0 || second_of("cube").drawn == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(service_->queued() + static_cast<size_t>(drawn_in_all()), 12U);
+  for (const auto& control : controls_) control->slow = false;
+  for (auto& picture : pictures) EXPECT_TRUE(picture.get());
+  EXPECT_EQ(first_of("cube").drawn + second_of("cube").drawn, 12);
+  EXPECT_GE(second_of("cube").drawn, 3);
+}
+
+TEST_F(SeveralRenderersTest, JobsAreCancelledAndReplacedWhereTheyWait) {
+  for (const auto& control : controls_) control->slow = true;
+  start_three();
+  for (const char* const model : {"cube", "teapot", "noise"}) {
+    auto drawing = draw(1, job_for(model));
+    while (first_of(model).drawn == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    auto waiting = draw(1, job_for(model));
+    EXPECT_TRUE(service_->replace(waiting.first, job_for(model)));
+    EXPECT_TRUE(service_->cancel(waiting.first));
+    EXPECT_EQ(waiting.second.get().error().kind, ErrorKind::kCancelled);
+    EXPECT_TRUE(service_->cancel(drawing.first));
+    EXPECT_EQ(drawing.second.get().error().kind, ErrorKind::kCancelled);
+  }
+}
+
+TEST_F(SeveralRenderersTest, StoppingEndsAllOfThem) {
+  for (const auto& control : controls_) control->slow = true;
+  start_three();
+  std::vector<std::future<Result<EncodedPicture>>> pictures;
+  for (const char* const model : {"cube", "teapot", "noise", "cube", "teapot", "noise"}) {
+    pictures.push_back(draw(1, job_for(model)).second);
+  }
+  service_.reset();
+  for (auto& picture : pictures) EXPECT_EQ(picture.get().error().kind, ErrorKind::kCancelled);
+}
+
+TEST_F(SeveralRenderersTest, DoNotStartIfOneOfThemDoesNot) {
+  std::vector<FrameRendererFactory> more{
+      []() -> Result<std::unique_ptr<FrameRenderer>> { return fail(ErrorKind::kUnavailable, "no GPU 7"); }};
+  const auto started =
+      RenderService::start(models_, fake_renderers(control_), {}, nullptr, std::nullopt, std::move(more));
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().message, "no GPU 7");
 }
 
 TEST_F(RenderServiceTest, AServiceWithoutARendererDoesNotStart) {

@@ -134,7 +134,7 @@ bool worth_drawing(const picture::PictureRequest& request, const residency::Prep
 /// Needs the current GL context. The pool is no larger than a buffer texture of splats, which take two texels each.
 MemoryBudgets budgets_of(const RendererConfig& config, bool software) {
   const MemoryBudgets by_default =
-      default_budgets({read_host_memory().available, software ? std::nullopt : gl::free_gpu_memory()});
+      default_budgets({read_host_memory().available / config.sharers, software ? std::nullopt : gl::free_gpu_memory()});
   const uint64_t wanted = config.gpu_bytes.value_or(by_default.gpu);
   const uint64_t possible = residency::BlockMemory::device_limit() / 2 * sizeof(glm::uvec4);
   return {std::min(wanted, possible), config.host_bytes.value_or(by_default.host)};

@@ -24,6 +24,7 @@ struct RendererConfig {
   int gpu = -1;                            ///< index of the EGL device; -1: the first hardware device, else software
   std::optional<size_t> gpu_bytes{};       ///< for the surfels of all models; none: default_budgets
   std::optional<size_t> host_bytes{};      ///< for packed blocks evicted from the GPU; none: default_budgets
+  unsigned sharers = 1;                    ///< renderers that share the host's memory by default
   unsigned decoders = 0;                   ///< threads that decode blocks; 0: one for each core
   size_t upload_bytes = size_t{16} << 20;  ///< stored on the GPU for one picture in motion, which waits for it
   uint32_t motion_glyphs = 2;              ///< of a picture in motion, see most_glyphs

@@ -29,7 +29,8 @@ std::vector<EGLDeviceEXT> egl_devices() {
   std::array<EGLDeviceEXT, 64> devices{};
   EGLint count = 0;
   if (!eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count)) return {};
-  return {devices.begin(), devices.begin() + count};
+  // Not in braces: a pointer to a device would do for a device, which is a pointer to anything.
+  return std::vector<EGLDeviceEXT>(devices.begin(), devices.begin() + count);
 }
 
 bool is_software_device(EGLDeviceEXT device) {
@@ -118,6 +119,10 @@ Result<std::unique_ptr<EglContext>> EglContext::create(int gpu) {
                 "EGL gives no OpenGL 4.5 core context (is a driver, or Mesa's libegl-mesa0, installed?)");
   }
   return std::unique_ptr<EglContext>(new EglContext(opened.display, opened.context));
+}
+
+size_t EglContext::devices() {
+  return egl_devices().size();
 }
 
 EglContext::EglContext(void* display, void* context)

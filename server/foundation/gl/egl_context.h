@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -17,6 +18,8 @@ class EglContext {
   /// `gpu` is an index into the EGL devices of the machine, or -1 for the default choice. Fails with kUnavailable if
   /// there is no such device or no OpenGL 4.5 core context.
   static Result<std::unique_ptr<EglContext>> create(int gpu);
+  /// How many EGL devices the machine has.
+  static size_t devices();
   ~EglContext();
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;

@@ -95,7 +95,7 @@ HttpAnswer HttpRoutes::answer_metrics(const std::string& accept) const {
                                          .picture_memory = context_->service.picture_memory(),
                                          .users = gate.connections(),
                                          .denied = gate.denied(),
-                                         .memory = context_->service.device().memory,
+                                         .memory = context_->service.memory(),
                                          .workers = workers ? std::optional(workers()) : std::nullopt},
                                         format);
   return text_answer(text, media_type(format));

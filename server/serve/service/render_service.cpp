@@ -9,12 +9,20 @@
 #include "service/guarded.h"
 #include "service/picture_channels.h"
 #include "service/render_service_state.h"
+#include "service/renderer_choice.h"
 
 namespace surfcast::service {
 namespace {
 
-/// Jobs of remote models have numbers above this one.
-constexpr JobId kFirstRemoteJob = JobId{1} << 63U;
+/// The highest byte of a job's number says whose it is: that of a renderer, or one more than the last of remote models.
+constexpr int kOwnerShift = 56;
+constexpr size_t kMaxRenderers = 128;
+/// Of how many views the renderer is remembered.
+constexpr size_t kViews = 4096;
+
+JobId first_job_of(size_t owner) {
+  return JobId{owner} << kOwnerShift;
+}
 
 tl::unexpected<Error> busy_error() {
   return fail(ErrorKind::kUnavailable, "the server is busy: too many pictures wait");
@@ -291,62 +299,93 @@ void RenderService::State::stop() {
   memory->close();
 }
 
-Status RenderService::State::start_threads(Drawers drawers) {
+Status RenderService::State::start_threads(FrameRendererFactory make_renderer,
+                                           std::shared_ptr<PickService> shared_picks) {
   pool = std::make_unique<WorkerPool>(limits.encoders, /*small_threads=*/1);
   lookups = std::make_unique<WorkerPool>(1);
   motion_pool = std::make_unique<WorkerPool>(1);
-  picks = std::make_unique<PickService>(models, limits.picks, std::move(drawers.queries));
+  picks = std::move(shared_picks);
   std::promise<Status> promise;
   std::future<Status> started = promise.get_future();
-  render_thread = std::jthread([this, make = std::move(drawers.make_renderer), made = std::move(promise)]() mutable {
-    run(make, std::move(made));
-  });
+  render_thread = std::jthread(
+      [this, make = std::move(make_renderer), made = std::move(promise)]() mutable { run(make, std::move(made)); });
   return started.get();
 }
 
-RenderService::RenderService(std::unique_ptr<State> state, std::unique_ptr<State> remote)
-    : state_(std::move(state)), remote_(std::move(remote)) {}
+RenderService::RenderService(std::vector<std::unique_ptr<State>> local, std::unique_ptr<State> remote)
+    : local_(std::move(local)), remote_(std::move(remote)), views_(kViews) {}
 
+/// Whose queries about a model are.
 RenderService::State& RenderService::state_of(const std::string& model) const {
-  return remote_ && state_->models.remote(model) ? *remote_ : *state_;
+  return remote_ && local_.front()->models.remote(model) ? *remote_ : *local_.front();
 }
 
 RenderService::State& RenderService::state_of(JobId job) const {
-  return remote_ && job > kFirstRemoteJob ? *remote_ : *state_;
+  const auto owner = static_cast<size_t>(job >> kOwnerShift);
+  return remote_ && owner >= local_.size() ? *remote_ : *local_.at(owner);
 }
 
-Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& models,
-                                                            FrameRendererFactory make_renderer,
-                                                            const ServiceLimits& limits,
-                                                            std::shared_ptr<ModelQueries> queries,
-                                                            std::optional<Drawers> remote) {
-  auto first = std::make_unique<State>(models, limits, kNoJob);
-  auto second = remote ? std::make_unique<State>(models, limits, kFirstRemoteJob) : nullptr;
-  const auto look_again = [one = first.get(), other = second.get()] {
-    one->look_again();
-    if (other != nullptr) other->look_again();
-  };
-  first->memory = std::make_shared<PictureMemory>(State::picture_memory_limit(limits), look_again);
-  if (second) second->memory = first->memory;
+/// Who draws a picture.
+RenderService::State& RenderService::drawer_of(const PictureJob& job) {
+  const std::string model = job.model.served_name();
+  if (State& state = state_of(model); local_.size() == 1 || &state == remote_.get()) return state;
+  const RendererChoice choice = rank_renderers(model, local_.size());
+  const size_t first = local_[choice.first]->queued();
+  const size_t second = local_[choice.second]->queued();
+  if (job.request.viewer == 0) return *local_[choose_renderer(choice, first, second, std::nullopt)];
+  const std::lock_guard lock(views_mutex_);
+  const std::shared_ptr<const size_t> former = views_.find(job.request.viewer);
+  const size_t chosen = choose_renderer(choice, first, second, former ? std::optional(*former) : std::nullopt);
+  views_.erase_range(job.request.viewer, job.request.viewer + 1);
+  views_.put(job.request.viewer, std::make_shared<const size_t>(chosen), 1);
+  return *local_[chosen];
+}
+
+std::vector<RenderService::State*> RenderService::all() const {
+  std::vector<State*> states;
+  for (const auto& state : local_) states.push_back(state.get());
+  if (remote_) states.push_back(remote_.get());
+  return states;
+}
+
+Result<std::unique_ptr<RenderService>> RenderService::start(
+    const ModelSource& models, FrameRendererFactory make_renderer, const ServiceLimits& limits,
+    std::shared_ptr<ModelQueries> queries, std::optional<Drawers> remote, std::vector<FrameRendererFactory> more) {
+  SURFCAST_EXPECTS(more.size() < kMaxRenderers);
+  std::vector<std::unique_ptr<State>> local;
+  for (size_t i = 0; i <= more.size(); ++i) local.push_back(std::make_unique<State>(models, limits, first_job_of(i)));
+  auto far = remote ? std::make_unique<State>(models, limits, first_job_of(local.size())) : nullptr;
   // Stops what has been started if the rest does not start.
-  std::unique_ptr<RenderService> service(new RenderService(std::move(first), std::move(second)));
-  if (Status status = service->state_->start_threads({std::move(make_renderer), std::move(queries)}); !status) {
-    return fail(std::move(status.error()));
+  std::unique_ptr<RenderService> service(new RenderService(std::move(local), std::move(far)));
+  const std::vector<State*> states = service->all();
+  const auto memory = std::make_shared<PictureMemory>(State::picture_memory_limit(limits), [states] {
+    for (State* const state : states) state->look_again();
+  });
+  for (State* const state : states) state->memory = memory;
+  const auto picks = std::make_shared<PickService>(models, limits.picks, std::move(queries));
+  more.insert(more.begin(), std::move(make_renderer));
+  for (size_t i = 0; i < more.size(); ++i) {
+    if (Status status = service->local_[i]->start_threads(std::move(more[i]), picks); !status) {
+      return fail(std::move(status.error()));
+    }
   }
   if (!remote) return service;
-  if (Status status = service->remote_->start_threads(std::move(*remote)); !status) {
+  auto far_picks = std::make_shared<PickService>(models, limits.picks, std::move(remote->queries));
+  if (Status status = service->remote_->start_threads(std::move(remote->make_renderer), std::move(far_picks));
+      !status) {
     return fail(std::move(status.error()));
   }
   return service;
 }
 
+/// What is about all renderers ends with the first one.
 RenderService::~RenderService() {
-  if (remote_) remote_->stop();
-  state_->stop();
+  const std::vector<State*> states = all();
+  std::for_each(states.rbegin(), states.rend(), [](State* state) { state->stop(); });
 }
 
 JobId RenderService::draw(const Client& client, PictureJob job, PictureDone done) {
-  State& state = state_of(job.model.served_name());
+  State& state = drawer_of(job);
   return state.add(client, std::move(job), std::move(done));
 }
 
@@ -385,19 +424,18 @@ bool RenderService::replace(JobId id, PictureJob picture) {
 }
 
 void RenderService::models_changed() {
-  state_->models_changed();
-  if (remote_) remote_->models_changed();
+  for (State* const state : all()) state->models_changed();
 }
 
 uint64_t RenderService::edition(const access::AuthorizedModel& model) const {
-  return state_->models.edition(model.served_name());
+  return local_.front()->models.edition(model.served_name());
 }
 
 void RenderService::list_models(access::Rights rights, ListDone done, ClientId client) {
-  const auto list = [state = state_.get(), rights = std::move(rights)]() -> Result<ModelList> {
+  const auto list = [state = local_.front().get(), rights = std::move(rights)]() -> Result<ModelList> {
     return list_of(rights, {state->models.names(), state->models.scans()});
   };
-  state_->lookups->post([list, done = std::move(done)] { done(guarded(list).value_or(ModelList())); }, client);
+  local_.front()->lookups->post([list, done = std::move(done)] { done(guarded(list).value_or(ModelList())); }, client);
 }
 
 void RenderService::describe_model(const access::AuthorizedModel& model, DescriptionDone done, ClientId client) {
@@ -448,12 +486,23 @@ void RenderService::next_piece(std::shared_ptr<PointStream> stream, PickService:
   service->next_piece(std::move(stream), std::move(done), client);
 }
 
-const picture::DeviceInfo& RenderService::device() const {
-  return state_->device;
+std::vector<picture::DeviceInfo> RenderService::devices() const {
+  std::vector<picture::DeviceInfo> devices;
+  for (const auto& state : local_) devices.push_back(state->device);
+  return devices;
+}
+
+picture::MemoryBudgets RenderService::memory() const {
+  picture::MemoryBudgets all;
+  for (const auto& state : local_) {
+    all.gpu += state->device.memory.gpu;
+    all.host += state->device.memory.host;
+  }
+  return all;
 }
 
 size_t RenderService::picture_memory() const {
-  return state_->memory->held();
+  return local_.front()->memory->held();
 }
 
 size_t RenderService::State::queued() const {
@@ -462,7 +511,9 @@ size_t RenderService::State::queued() const {
 }
 
 size_t RenderService::queued() const {
-  return state_->queued() + (remote_ ? remote_->queued() : 0);
+  size_t queued = 0;
+  for (const State* const state : all()) queued += state->queued();
+  return queued;
 }
 
 }  // namespace surfcast::service

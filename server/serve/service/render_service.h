@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "access/authorization.h"
+#include "base/lru_cache.h"
 #include "base/result.h"
 #include "picture/channels.h"
 #include "picture/file_format.h"
@@ -99,9 +101,10 @@ struct Drawers {
   std::shared_ptr<ModelQueries> queries{};  ///< answers what is asked about them beside pictures; null: this process
 };
 
-/// Draws and encodes pictures. One render thread owns the renderer and takes jobs from a queue that is fair between
-/// clients and their sessions. A small pool encodes still pictures; motion pictures have an encoder thread of their
-/// own. Motion pictures may preempt still pictures (see DrawShares). All methods may be called from any thread.
+/// Draws and encodes pictures. A render thread owns each renderer and takes jobs from a queue that is fair between
+/// clients and their sessions. Models are spread over the renderers (see RendererChoice). A small pool encodes still
+/// pictures; motion pictures have an encoder thread of their own. Motion pictures may preempt still pictures (see
+/// DrawShares). All methods may be called from any thread.
 ///
 /// Remote models (see ModelSource) may have a queue and threads of their own, so that nobody else waits for the
 /// network.
@@ -119,13 +122,15 @@ class RenderService {
   using ListDone = std::function<void(ModelList)>;
   using DescriptionDone = std::function<void(Result<ModelDescription>)>;
 
-  /// Starts the threads. Fails if the renderer cannot be created. `models` must outlive the service. `queries` answers
+  /// Starts the threads. Fails if a renderer cannot be created. `models` must outlive the service. `queries` answers
   /// what is asked about models beside pictures; null: this process does. `remote`: who draws remote models, beside the
-  /// others; none: whoever draws those. Only the memory of pictures is shared then; other limits are of each queue.
+  /// others; none: whoever draws those. `more`: further renderers of the same models, as of other GPUs. Only the memory
+  /// of pictures is shared; other limits are of each queue.
   static Result<std::unique_ptr<RenderService>> start(const ModelSource& models, FrameRendererFactory make_renderer,
                                                       const ServiceLimits& limits,
                                                       std::shared_ptr<ModelQueries> queries = nullptr,
-                                                      std::optional<Drawers> remote = std::nullopt);
+                                                      std::optional<Drawers> remote = std::nullopt,
+                                                      std::vector<FrameRendererFactory> more = {});
   /// Cancels the outstanding jobs and joins the threads.
   ~RenderService();
 
@@ -157,19 +162,27 @@ class RenderService {
               ClientId client = 0);
   void next_piece(std::shared_ptr<PointStream> stream, PickService::PieceDone done, ClientId client = 0);
 
-  [[nodiscard]] const picture::DeviceInfo& device() const;
-  /// Jobs that wait for the render thread.
+  /// The devices of the renderers, but for that of remote models.
+  [[nodiscard]] std::vector<picture::DeviceInfo> devices() const;
+  /// Their budgets together.
+  [[nodiscard]] picture::MemoryBudgets memory() const;
+  /// Jobs that wait for a render thread.
   [[nodiscard]] size_t queued() const;
   /// Bytes of ServiceLimits::picture_memory that are taken.
   [[nodiscard]] size_t picture_memory() const;
 
  private:
   struct State;
-  RenderService(std::unique_ptr<State> state, std::unique_ptr<State> remote);
+  RenderService(std::vector<std::unique_ptr<State>> local, std::unique_ptr<State> remote);
   [[nodiscard]] State& state_of(const std::string& model) const;
   [[nodiscard]] State& state_of(JobId job) const;
-  std::unique_ptr<State> state_;
-  std::unique_ptr<State> remote_;  ///< of remote models; null: they have none of their own
+  [[nodiscard]] State& drawer_of(const PictureJob& job);
+  [[nodiscard]] std::vector<State*> all() const;
+
+  std::vector<std::unique_ptr<State>> local_;  ///< of each renderer; the first one has what is not of a renderer
+  std::unique_ptr<State> remote_;              ///< of remote models; null: they have none of their own
+  std::mutex views_mutex_;
+  LruCache<uint64_t, size_t> views_;  ///< which renderer has drawn the last picture of each view
 };
 
 }  // namespace surfcast::service

@@ -38,7 +38,7 @@ struct RenderService::State {
   State(const ModelSource& source, const ServiceLimits& service_limits, JobId jobs_before)
       : models(source), limits(service_limits), queue(service_limits.queued_jobs), last_id(jobs_before) {}
 
-  [[nodiscard]] Status start_threads(Drawers drawers);
+  [[nodiscard]] Status start_threads(FrameRendererFactory make_renderer, std::shared_ptr<PickService> shared_picks);
 
   // Render thread.
   void run(const FrameRendererFactory& make_renderer, std::promise<Status> started);
@@ -119,7 +119,7 @@ struct RenderService::State {
   bool stopping = false;
 
   // Declared last, so the threads end before the members that they use.
-  std::unique_ptr<PickService> picks;
+  std::shared_ptr<PickService> picks;  ///< of all renderers of the same models
   std::unique_ptr<WorkerPool> pool;
   std::unique_ptr<WorkerPool> motion_pool;  ///< one thread
   std::unique_ptr<WorkerPool> lookups;      ///< one thread, which waits for the disk

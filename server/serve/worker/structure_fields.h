@@ -217,9 +217,10 @@ namespace surfcast::render {
 /// The worker has its own table of kinds and its own guard.
 template <typename Archive, worker::Is<RendererConfig> T>
 void fields(Archive& archive, T& value) {
-  auto& [gpu, gpu_bytes, host_bytes, decoders, upload_bytes, motion_glyphs, viewers, gpu_kernels, list_entries,
+  auto& [gpu, gpu_bytes, host_bytes, sharers, decoders, upload_bytes, motion_glyphs, viewers, gpu_kernels, list_entries,
          shader_defines, kinds, load_guard] = value;
-  archive(gpu, gpu_bytes, host_bytes, decoders, upload_bytes, motion_glyphs, viewers, gpu_kernels, list_entries);
+  archive(gpu, gpu_bytes, host_bytes, sharers, decoders, upload_bytes, motion_glyphs, viewers, gpu_kernels,
+          list_entries);
   archive(shader_defines);
 }
 
