@@ -228,6 +228,57 @@ TEST_F(AppendModelTest, AModelOfOneBlockGrows) {
   expect_like_build_of({few, more});
 }
 
+TEST_F(AppendModelTest, ASmallMemoryMakesTheSameBytes) {
+  const fs::path far = write("far.xyz", hills(360, 700, 200), 80000);
+  const std::string before = content_of(model_);
+  AppendOptions options;
+  options.part_points = 5000;
+  append({far}, options);
+  const std::string with_all = content_of(model_);
+  std::ofstream(model_, std::ios::binary) << before;
+  options.memory = uint64_t{400} << 20;
+  const BuildReport report = append({far}, options);
+  EXPECT_EQ(report.memory_budget, uint64_t{400} << 20);
+  EXPECT_TRUE(content_of(model_) == with_all);
+}
+
+/// At this latitude zones 32 and 33 meet where eastings are 720.6 km in one and 279.4 km in the other.
+TEST_F(AppendModelTest, AScanInAnotherSystemIsBroughtIntoThatOfTheModel) {
+  const auto in_zone = [this](const std::string& name, double from, double to, double zone, size_t first) {
+    std::vector<glm::dvec3> positions = hills(from, to, 100);
+    for (glm::dvec3& p : positions) p += glm::dvec3(zone, 5'400'000, 200);
+    return write(name, positions, first);
+  };
+  const fs::path west = in_zone("zone32.xyz", 0, 200, 720'000, 0);
+  const fs::path east = in_zone("more.xyz", 200, 260, 720'000, 50000);
+  BuildOptions build_options;
+  build_options.systems.assigned = "EPSG:25832";
+  ASSERT_TRUE(build_model(std::vector{west}, model_, build_options, [](const BuildStep&) {}));
+  AppendOptions options;
+  options.systems.assigned = "EPSG:25832";
+  append({east}, options);
+  ASSERT_TRUE(build_model(std::vector{west, east}, whole_, build_options, [](const BuildStep&) {}));
+  const Result<model::ModelFile> model = model::ModelFile::open(model_);
+  ASSERT_TRUE(model);
+  const Result<model::Georeference> georeference = model->georeference();
+  ASSERT_TRUE(georeference);
+  EXPECT_EQ(georeference->system.id, "EPSG:25832");
+  const std::map<uint32_t, AppendedPoint> expected = points_of(whole_);
+  const std::map<uint32_t, AppendedPoint> points = points_of(model_);
+  ASSERT_EQ(points.size(), expected.size());
+  for (const auto& [number, point] : points) {
+    EXPECT_LT(glm::distance(point.position, expected.at(number).position), 2 * point.radius / 256);
+  }
+  options.systems.assigned = "EPSG:25833";
+  const fs::path other = in_zone("zone33.xyz", 260, 300, 280'000, 60000);
+  const BuildReport report = append({other}, options);
+  ASSERT_EQ(report.transformed.size(), 1U);
+  const Result<model::ModelFile> grown = model::ModelFile::open(model_);
+  ASSERT_TRUE(grown);
+  EXPECT_GT(grown->info().bounds.max.x, 720'260);
+  EXPECT_LT(grown->info().bounds.max.x, 730'000);
+}
+
 TEST_F(AppendModelTest, WhatDoesNotFitIsRefusedByName) {
   const fs::path empty = folder_ / "empty.xyz";
   std::ofstream(empty) << "x y z number intensity\n";

@@ -2,13 +2,16 @@
 // change files and stops the program before or after one of them. Between two such calls no file changes, so all that
 // a stop can leave behind is seen, and the same on every run.
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <ostream>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -49,6 +52,27 @@ void write_gaussians(const fs::path& path, int side) {
     const float splat[] = {x, y, std::sin(x / 9), 0.1F, 0.2F, 0.3F, 1, -2, -2, -3, 1, 0, 0, 0};
     file.write(reinterpret_cast<const char*>(splat), sizeof(splat));
   }
+}
+
+/// The moments to try of so many. How many changes of files there are varies with the order of threads a little, which
+/// the last moments cover.
+std::set<long> moments_of(long count) {
+  std::set<long> chosen;
+  for (long i = 0; i < kMoments; ++i) chosen.insert(1 + i * (count - 1) / kMoments);
+  for (long i = 0; i < kLastMoments; ++i) chosen.insert(std::max(1L, count - i));
+  return chosen;
+}
+
+/// Runs a command with these variables in its environment; the exit code, or 128 and the signal.
+int run_counted(std::vector<std::string> variables, std::vector<std::string> command) {
+  std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=" STOP_AT_CALL};
+  std::ranges::move(variables, std::back_inserter(line));
+  std::ranges::move(command, std::back_inserter(line));
+  return client::wait_for_program(client::start_program(line));
+}
+
+std::vector<std::string> stop_at(long moment, int signal) {
+  return {"SURFCAST_STOP_AT=" + std::to_string(moment), "SURFCAST_STOP_SIGNAL=" + std::to_string(signal)};
 }
 
 /// A program that builds what `write` writes, and how often it changes files at least.
@@ -109,29 +133,18 @@ class StoppedBuildTest : public ::testing::TestWithParam<Builder> {
   [[nodiscard]] fs::path source() const { return folder_ / GetParam().source; }
   [[nodiscard]] fs::path target() const { return folder_ / "model.surf"; }
 
-  /// Builds with these variables in the environment; the exit code, or 128 and the signal.
   [[nodiscard]] int build(std::vector<std::string> variables) const {
-    std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=" STOP_AT_CALL};
-    line.insert(line.end(), variables.begin(), variables.end());
-    for (std::string& word : GetParam().command(source(), target())) line.push_back(std::move(word));
-    return client::wait_for_program(client::start_program(line));
+    return run_counted(std::move(variables), GetParam().command(source(), target()));
   }
 
   /// Returns whether the build was still going on at that moment.
   [[nodiscard]] bool stop_build(long moment, int signal) const {
-    const int code =
-        build({"SURFCAST_STOP_AT=" + std::to_string(moment), "SURFCAST_STOP_SIGNAL=" + std::to_string(signal)});
+    const int code = build(stop_at(moment, signal));
     EXPECT_TRUE(code == 128 + signal || code == 0) << code;
     return code == 128 + signal;
   }
 
-  /// How many changes of files there are varies with the order of threads a little, which the last moments cover.
-  [[nodiscard]] std::set<long> moments() const {
-    std::set<long> chosen;
-    for (long i = 0; i < kMoments; ++i) chosen.insert(1 + i * (moments_ - 1) / kMoments);
-    for (long i = 0; i < kLastMoments; ++i) chosen.insert(std::max(1L, moments_ - i));
-    return chosen;
-  }
+  [[nodiscard]] std::set<long> moments() const { return moments_of(moments_); }
 
   /// What is in the folder beside the source and the model.
   [[nodiscard]] std::string leftovers() const {
@@ -193,6 +206,59 @@ TEST_P(StoppedBuildTest, AnOldModelStaysUntilTheNewOneIsWhole) {
     remove_leftovers();
   }
   EXPECT_TRUE(was_old && was_whole) << "stops before and after the model was in its place";
+}
+
+/// Scans that are added to a model.
+class StoppedAppendTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) / ("stopped_append_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    std::signal(SIGINT, SIG_DFL);  // may be ignored, which programs inherit
+    testing::write_waves(folder_ / "west.ply", 150);
+    testing::write_waves_from(folder_ / "east.ply", 100, 150);
+    ASSERT_EQ(run_counted({}, {SURFCASTD, "build", folder_ / "west.ply", "--output", model_}), 0);
+    before_ = testing::bytes_in(model_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] int append(std::vector<std::string> variables) const {
+    return run_counted(std::move(variables), {SURFCASTD, "build", folder_ / "east.ply", "--into", model_});
+  }
+  [[nodiscard]] size_t files() const {
+    return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+  fs::path model_ = fs::path(::testing::TempDir()) / ("stopped_append_" + std::to_string(getpid())) / "model.surf";
+  std::string before_;
+};
+
+TEST_F(StoppedAppendTest, TheModelIsTheFormerOneUntilTheGrownOneIsWhole) {
+  const fs::path counted = folder_ / "moments";
+  ASSERT_EQ(append({"SURFCAST_MOMENTS=" + counted.string()}), 0);
+  const std::string grown = testing::bytes_in(model_);
+  const long count = std::stol(testing::bytes_in(counted));
+  fs::remove(counted);
+  ASSERT_TRUE(grown != before_);
+  bool was_former = false, was_grown = false;
+  for (const long moment : moments_of(count)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+      if (entry.path().extension() != ".ply") fs::remove(entry.path());
+    }
+    std::ofstream(model_, std::ios::binary) << before_;
+    const int signal = moment % 3 == 0 ? SIGINT : SIGKILL;
+    const int code = append(stop_at(moment, signal));
+    ASSERT_TRUE(code == 128 + signal || code == 0) << code;
+    const std::string now = testing::bytes_in(model_);
+    ASSERT_TRUE(now == before_ || now == grown) << now.size() << ", stopped at " << moment;
+    (now == grown ? was_grown : was_former) = true;
+    if (signal == SIGINT) {
+      ASSERT_EQ(files(), 3U) << "stopped at " << moment << " of " << count;
+    }
+  }
+  EXPECT_TRUE(was_former && was_grown) << "stops before and after the model was in its place";
 }
 
 }  // namespace
