@@ -366,6 +366,28 @@ TEST_F(SeveralRenderersTest, JobsAreCancelledAndReplacedWhereTheyWait) {
   }
 }
 
+TEST_F(SeveralRenderersTest, AViewStaysWhileItsLastPictureIsDrawn) {
+  for (const auto& control : controls_) control->slow = true;
+  start_three();
+  auto [shown, showing] = draw(1, motion_of("cube"));
+  while (first_of("cube").drawn == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::vector<std::future<Result<EncodedPicture>>> others;
+  for (SessionId session = 2; second_of("cube").drawn == 0; ++session) {
+    others.push_back(draw(session, job_for("cube")).second);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  PictureJob next = motion_of("cube");
+  next.supersedes = shown;
+  auto following = draw(1, next).second;
+  for (const auto& control : controls_) control->slow = false;
+  EXPECT_TRUE(following.get());
+  (void)showing.get();  // obsolete unless it was encoded before
+  for (auto& other : others) EXPECT_TRUE(other.get());
+  service_.reset();
+  const auto in_motion = [](const picture::PictureRequest& request) { return request.viewer != 0; };
+  EXPECT_EQ(std::ranges::count_if(first_of("cube").requests, in_motion), 2);
+}
+
 TEST_F(SeveralRenderersTest, StoppingEndsAllOfThem) {
   for (const auto& control : controls_) control->slow = true;
   start_three();

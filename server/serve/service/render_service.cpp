@@ -325,10 +325,11 @@ RenderService::State& RenderService::state_of(JobId job) const {
   return remote_ && owner >= local_.size() ? *remote_ : *local_.at(owner);
 }
 
-/// Who draws a picture.
+/// Who draws a picture. One that may make another one obsolete is drawn where that is.
 RenderService::State& RenderService::drawer_of(const PictureJob& job) {
   const std::string model = job.model.served_name();
   if (State& state = state_of(model); local_.size() == 1 || &state == remote_.get()) return state;
+  if (State& state = state_of(job.supersedes); job.supersedes != kNoJob && state.has(job.supersedes)) return state;
   const RendererChoice choice = rank_renderers(model, local_.size());
   const size_t first = local_[choice.first]->queued();
   const size_t second = local_[choice.second]->queued();
@@ -503,6 +504,11 @@ picture::MemoryBudgets RenderService::memory() const {
 
 size_t RenderService::picture_memory() const {
   return local_.front()->memory->held();
+}
+
+bool RenderService::State::has(JobId id) const {
+  const std::lock_guard lock(mutex);
+  return jobs.contains(id);
 }
 
 size_t RenderService::State::queued() const {

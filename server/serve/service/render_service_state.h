@@ -87,6 +87,7 @@ struct RenderService::State {
   void when_available(const std::string& model, const Proceed& proceed);
   void models_changed();
   bool cancel(JobId id);
+  [[nodiscard]] bool has(JobId id) const;
   [[nodiscard]] size_t queued() const;
   void finish(const JobPointer& job, Result<EncodedPicture> result);
   void stop();
