@@ -150,6 +150,7 @@ Result<service::NamedModel> find_one(const fs::path& path, const ScanCacheConfig
 
 void name_apart(std::vector<service::NamedModel>& models) {
   std::vector<std::string> names;
+  names.reserve(models.size());
   for (const service::NamedModel& model : models) names.push_back(model.name);
   set_apart(names);
   for (size_t i = 0; i < models.size(); ++i) models[i].name = std::move(names[i]);
