@@ -48,13 +48,12 @@ std::optional<int> hardware_device(std::string_view line) {
 
 }  // namespace
 
-void add_gpus_flag(CLI::App& command, GpuSelection& gpus) {
+void add_gpus_flag(CLI::App& command, GpuSelection& gpus, const std::string& use) {
   command
       .add_option_function<std::string>(
           "--gpu", [&gpus](const std::string& text) { gpus = parse_gpus(text).value_or(GpuSelection()); },
-          "EGL device to draw on, or several with commas between them, or all: models are spread over them (default: "
-          "the "
-          "first hardware device; the command gpus lists the devices)")
+          "EGL device to draw on, or several with commas between them, or all: " + use +
+              " (default: the first hardware device; the command gpus lists the devices)")
       ->envname(protocol::environment_name("gpu"))
       ->type_name("N,...|all")
       ->check([](const std::string& text) { return parse_gpus(text) ? std::string() : kForm; });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 #include <vector>
 
 #include "base/result.h"
@@ -13,8 +14,8 @@ struct GpuSelection {
   std::vector<int> numbers;  ///< of EGL devices; may have one several times; empty: the default device
 };
 
-/// `--gpu` of a server.
-void add_gpus_flag(CLI::App& command, GpuSelection& gpus);
+/// `--gpu`. `use`: what is done with several, in its description.
+void add_gpus_flag(CLI::App& command, GpuSelection& gpus, const std::string& use);
 
 /// Device numbers as in render::RendererConfig::gpu, at least one. All hardware devices are found by the command `gpus`
 /// in a process of its own, because drivers stay loaded; without any it is the default device.

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "cmd/commands.h"
 #include "cmd/find_models.h"
+#include "cmd/gpu_flag.h"
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
 #include "cmd/store_flags.h"
@@ -28,6 +29,7 @@ struct RenderCommand {
   protocol::RequestFlags flags;
   ScanCacheConfig cache;
   render::RendererConfig renderer;
+  GpuSelection gpus;
   /// Nobody else waits for the renderer, so the picture takes the time that it takes.
   service::ServiceLimits limits{.queue_timeout = std::chrono::hours(24 * 365)};
   object_store::StoreConfig store;
@@ -55,7 +57,10 @@ void warn_of_unused_options(const service::ModelCatalogue& models, const wire::D
   for (const std::string& line : unused_options(request, (*model)->info())) spdlog::warn("{}", line);
 }
 
-Status render(const RenderCommand& command) {
+Status render(RenderCommand command) {
+  const Result<std::vector<int>> devices = devices_of(command.gpus);
+  if (!devices) return fail(devices.error());
+  command.renderer.gpu = devices->front();
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
   if (!blocks) return fail(std::move(blocks.error()));
   const object_store::ObjectStore store(command.store, *blocks);
@@ -83,10 +88,7 @@ void add_render_command(CLI::App& app, Status& outcome) {
   CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model or scan, or the frames of a camera path");
   sub->add_option("MODEL", command->models, "Model file, its URL, or scan; several are shown together")->required();
   command->flags.add_to(*sub);
-  sub->add_option("--gpu", command->renderer.gpu,
-                  "EGL device to draw on (default: the first hardware device; the command gpus lists the devices)")
-      ->envname(protocol::environment_name("gpu"))
-      ->check(CLI::Range(0, 63));
+  add_gpus_flag(*sub, command->gpus, "the first one draws");
   add_renderer_flags(*sub, command->renderer);
   add_cache_flags(*sub, command->cache);
   add_picture_flags(*sub, command->limits);

@@ -398,7 +398,7 @@ void add_serve_command(CLI::App& app, Status& outcome) {
       ->type_name("NUMBER")
       ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
   add_tls_flags(*sub, *command);
-  add_gpus_flag(*sub, command->gpus);
+  add_gpus_flag(*sub, command->gpus, "models are spread over them");
   add_renderer_flags(*sub, command->renderer);
   sub->add_flag("--no-shader-warm-up", command->no_shader_warm_up,
                 "Compile shaders when a picture needs them, not before: an idle server then uses no processor, and the "

@@ -142,6 +142,9 @@ TEST_F(ServeTest, TwoGpusHaveAWorkerEachAndDrawAllModels) {
   EXPECT_NE(metrics.find("\nsurfcast_host_memory_budget_bytes 67108864\n"), std::string::npos) << "of both";
   ASSERT_TRUE(draws("a"));
   const std::string drawn = content(file("drawn.png"));
+  const std::string render = "SURFCAST_GPU=0,0 " SURFCAST_SERVER " render --cache " + cache() + " ";
+  EXPECT_EQ(client::run_program(render + scan_.string() + " --resolution 8,8 --output " + file("alone.png")).code, 0)
+      << "with the variable of the server";
   for (const pid_t worker : workers()) ::kill(worker, SIGKILL);
   for (const char* const name : {"b", "c", "d", "e", "f", "a"}) {
     ASSERT_TRUE(draws(name));
