@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "builder/model_surfels.h"
 #include "builder/text_scan.h"
 #include "model/model_file.h"
 #include "model/test_folder.h"
@@ -21,38 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-/// What a leaf has of a point.
-struct AppendedPoint {
-  glm::dvec3 position;
-  glm::vec3 normal;
-  float radius;
-  float weight;
-  double intensity;
-};
-
-/// The points of all leaves by their numbers.
-std::map<uint32_t, AppendedPoint> points_of(const fs::path& path) {
-  std::map<uint32_t, AppendedPoint> points;
-  const Result<model::ModelFile> model = model::ModelFile::open(path);
-  EXPECT_TRUE(model) << model.error().message;
-  for (size_t b = 0; b < model->blocks().size(); ++b) {
-    const Result<model::DecodedBlock> block = model->decode(b);
-    EXPECT_TRUE(block) << block.error().message;
-    if (model->blocks()[b].level > 0) continue;
-    const auto value = [&](const std::string& name, size_t i) {
-      const auto scalar = std::ranges::find(block->scalars, name, &surfel::ScalarAttribute::name);
-      return std::visit([i](const auto& values) { return static_cast<double>(values[i]); }, scalar->values);
-    };
-    for (size_t i = 0; i < block->size(); ++i) {
-      const auto number = static_cast<uint32_t>(value("number", i));
-      EXPECT_EQ(points.count(number), 0U);
-      points[number] = {block->position(i), block->normals[i], block->radii[i], block->weights[i],
-                        value("intensity", i)};
-    }
-  }
-  return points;
-}
 
 std::set<uint64_t> checksums_of(const fs::path& path, bool leaves) {
   std::set<uint64_t> checksums;
@@ -114,14 +83,14 @@ class AppendModelTest : public ::testing::Test {
   /// Compares the model with that of all inputs.
   void expect_like_build_of(const std::vector<fs::path>& inputs) const {
     build(inputs, whole_);
-    const std::map<uint32_t, AppendedPoint> expected = points_of(whole_);
-    const std::map<uint32_t, AppendedPoint> points = points_of(model_);
+    const std::map<uint32_t, Surfel> expected = surfels_of(whole_);
+    const std::map<uint32_t, Surfel> points = surfels_of(model_);
     ASSERT_EQ(points.size(), expected.size());
     size_t turned = 0;
     size_t resized = 0;
     size_t reweighted = 0;
     for (const auto& [number, point] : points) {
-      const AppendedPoint& other = expected.at(number);
+      const Surfel& other = expected.at(number);
       EXPECT_LT(glm::distance(point.position, other.position), 2 * other.radius / 256);
       EXPECT_EQ(point.intensity, other.intensity);
       turned += glm::dot(point.normal, other.normal) < 0.999F ? 1 : 0;
@@ -263,8 +232,8 @@ TEST_F(AppendModelTest, AScanInAnotherSystemIsBroughtIntoThatOfTheModel) {
   const Result<model::Georeference> georeference = model->georeference();
   ASSERT_TRUE(georeference);
   EXPECT_EQ(georeference->system.id, "EPSG:25832");
-  const std::map<uint32_t, AppendedPoint> expected = points_of(whole_);
-  const std::map<uint32_t, AppendedPoint> points = points_of(model_);
+  const std::map<uint32_t, Surfel> expected = surfels_of(whole_);
+  const std::map<uint32_t, Surfel> points = surfels_of(model_);
   ASSERT_EQ(points.size(), expected.size());
   for (const auto& [number, point] : points) {
     EXPECT_LT(glm::distance(point.position, expected.at(number).position), 2 * point.radius / 256);

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "builder/model_surfels.h"
 #include "builder/text_scan.h"
 #include "model/model_file.h"
 #include "model/test_folder.h"
@@ -23,41 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-
-struct Surfel {
-  glm::dvec3 position;
-  glm::vec3 normal;
-  float radius;
-  float weight;
-  int intensity;
-  bool scatter;
-};
-
-/// The leaves of a model, each surfel by its number.
-std::map<uint32_t, Surfel> surfels_of(const fs::path& path) {
-  std::map<uint32_t, Surfel> surfels;
-  const Result<model::ModelFile> model = model::ModelFile::open(path);
-  EXPECT_TRUE(model) << model.error().message;
-  for (size_t b = 0; b < model->blocks().size(); ++b) {
-    const Result<model::DecodedBlock> block = model->decode(b);
-    EXPECT_TRUE(block) << block.error().message;
-    if (model->blocks()[b].level > 0) continue;
-    for (size_t i = 0; i < block->size(); ++i) {
-      const auto value = [&](const std::string& name) {
-        const auto scalar = std::find_if(block->scalars.begin(), block->scalars.end(),
-                                         [&name](const surfel::ScalarAttribute& s) { return s.name == name; });
-        return std::visit([i](const auto& values) { return static_cast<uint32_t>(values[i]); }, scalar->values);
-      };
-      surfels[value("number")] = {block->position(i),
-                                  block->normals[i],
-                                  block->radii[i],
-                                  block->weights[i],
-                                  static_cast<int>(value("intensity")),
-                                  block->is_scatter(i)};
-    }
-  }
-  return surfels;
-}
 
 BuildReport build(const std::vector<fs::path>& inputs, const fs::path& target, const BuildOptions& options = {}) {
   const Result<BuildReport> report = build_model(inputs, target, options, [](const BuildStep&) {});

@@ -256,7 +256,8 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
                                                          const Preemption& preemption) {
   const std::vector<bool> clear = clear_blocks(scene.model(), display.volumes);
   const std::vector<bool> hidden_members = model::hidden_members(scene.model(), request.hidden_models);
-  const std::vector<uint32_t> roots = model::shown_roots(scene.model(), hidden_members);
+  std::vector<uint32_t> roots;  // where members are hidden
+  if (!hidden_members.empty()) roots = model::shown_roots(scene.model(), hidden_members);
   residency::ViewParameters parameters{frame,
                                        request.spacing,
                                        display.clipped ? &request.clip : nullptr,

@@ -28,7 +28,8 @@ namespace surfcast::service {
 /// The number of no job: jobs count from 1.
 inline constexpr JobId kNoJob = 0;
 
-/// The service of some models, with a queue and threads of their own. Its render thread is in render_thread.cpp.
+/// The service of some models, with a queue and threads of their own. Its render thread is in render_thread.cpp, the
+/// rest in render_service_state.cpp.
 struct RenderService::State {
   using JobPointer = std::shared_ptr<RenderJob>;
   /// Gets an error if the model is not there in time.
