@@ -1,8 +1,6 @@
 #include "protocol/film.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -19,6 +17,7 @@
 #include <unistd.h>
 
 #include "base/child_process.h"
+#include "base/letter_case.h"
 
 namespace surfcast::protocol {
 namespace {
@@ -29,12 +28,6 @@ constexpr const char* kEncoder = "ffmpeg";
 
 tl::unexpected<Error> system_error(const std::string& what, int code) {
   return fail(ErrorKind::kIo, what + ": " + std::strerror(code));
-}
-
-std::string extension_of(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension;
 }
 
 /// Pictures come from standard input. Sides are even, which both codecs need, by a repeated column or row. sRGB becomes
@@ -64,7 +57,7 @@ std::vector<std::string> encoder_arguments(const fs::path& target, const fs::pat
       "-color_trc",
       "bt709"};
   const std::vector<std::string> codec =
-      extension_of(target) == ".webm"
+      lower_extension(target) == ".webm"
           ? std::vector<std::string>{"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-f", "webm"}
           : std::vector<std::string>{"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart", "-f", "mp4"};
   arguments.insert(arguments.end(), codec.begin(), codec.end());
@@ -98,7 +91,7 @@ Status flush(const fs::path& file) {
 }  // namespace
 
 bool is_film(const fs::path& file) {
-  const std::string extension = extension_of(file);
+  const std::string extension = lower_extension(file);
   return extension == ".mp4" || extension == ".webm";
 }
 

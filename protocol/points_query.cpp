@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/letter_case.h"
 #include "protocol/parse.h"
 #include "protocol/url_query.h"
 #include "protocol/validate.h"
@@ -173,8 +173,7 @@ Status check_points(const wire::GetPoints& points) {
 }
 
 Result<wire::PointFormat> parse_point_format(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = to_lower(text);
   std::string names;
   for (const auto& [name, format] : kFormats) {
     if (lower == name) return format;

@@ -1,10 +1,10 @@
 #include "protocol/profile_query.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 
+#include "base/letter_case.h"
 #include "protocol/parse.h"
 #include "protocol/url_query.h"
 #include "protocol/validate.h"
@@ -90,8 +90,7 @@ Status check_profile_answer(const wire::Profile& profile) {
 }
 
 Result<ProfileFormat> parse_profile_format(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = to_lower(text);
   if (lower == "csv") return ProfileFormat::kCsv;
   if (lower == "las") return ProfileFormat::kLas;
   return fail(ErrorKind::kUnsupported, "'" + std::string(text) + "' is not a format of profiles: csv, las");

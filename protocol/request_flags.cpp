@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/contract.h"
+#include "base/letter_case.h"
 #include "base/mapped_file.h"
 #include "protocol/camera_path.h"
 #include "protocol/film.h"
@@ -162,11 +163,10 @@ Result<wire::FileFormat> RequestFlags::format() const {
   if (is_film(output_)) return wire::FILE_FORMAT_PNG;  // of the frames
   if (const std::string& given = values_.at("format"); !given.empty()) return parse_file_format(given);
   if (output_ == "-") return fail(ErrorKind::kInvalidInput, "--output - needs --format");
-  std::string extension = std::filesystem::path(output_).extension().string();
+  const std::string extension = lower_extension(output_);
   if (extension.empty()) {
     return fail(ErrorKind::kInvalidInput, output_ + ": give it an extension (png, jpg, webp, exr), or --format");
   }
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return parse_file_format(extension.substr(1)).map_error([this](const Error& error) {
     return Error{error.kind, output_ + ": " + error.message};
   });

@@ -1,10 +1,10 @@
 #include "builder/input_files.h"
 
 #include <algorithm>
-#include <cctype>
 #include <system_error>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "builder/build_gaussians.h"
 #include "builder/grid_input.h"
 #include "builder/mesh_input.h"
@@ -88,9 +88,9 @@ InputKind kind_of_input(const fs::path& path) {
 
 Files inputs_in(const fs::path& folder) {
   const std::vector<std::string> extensions = input_extensions();
-  const auto may_be_input = [&](std::string name) {
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return std::ranges::any_of(extensions, [&](const std::string& extension) { return name.ends_with(extension); });
+  const auto may_be_input = [&](const std::string& name) {
+    return std::ranges::any_of(extensions,
+                               [lower = to_lower(name)](const auto& extension) { return lower.ends_with(extension); });
   };
   Files files;
   std::error_code code;

@@ -1,7 +1,6 @@
 #include "exporter/export_scan.h"
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -10,6 +9,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "base/atomic_file.h"
+#include "base/letter_case.h"
 #include "base/mapped_file.h"
 #include "exporter/las14.h"
 #include "exporter/las_copy.h"
@@ -47,13 +47,6 @@ Status for_each_piece(size_t pieces, const std::function<Result<T>(size_t)>& rea
   return {};
 }
 
-std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 /// What is written.
 struct TargetForm {
   PointFormat format = PointFormat::kLaz;
@@ -62,9 +55,9 @@ struct TargetForm {
 
 /// The form of a file, by its name.
 Result<TargetForm> form_of(const fs::path& target) {
-  const std::string extension = extension_of(target);
+  const std::string extension = lower_extension(target);
   if (target.filename() == "ept.json") return TargetForm{PointFormat::kLaz, OctreeForm::kEpt};
-  if (extension == ".laz" && extension_of(target.stem()) == ".copc")
+  if (extension == ".laz" && lower_extension(target.stem()) == ".copc")
     return TargetForm{PointFormat::kLaz, OctreeForm::kCopc};
   if (!extension.empty()) {
     if (const auto format = point_format_of(std::string_view(extension).substr(1))) return TargetForm{*format, {}};
@@ -284,7 +277,7 @@ Result<ExportReport> export_points_of_model(std::shared_ptr<const model::ModelFi
 Result<ExportReport> export_scan(const fs::path& source, const fs::path& target, const ExportOptions& options) {
   const Result<TargetForm> form = form_of(target);
   if (!form) return fail(form.error());
-  if (extension_of(source) == ".surf") {
+  if (lower_extension(source) == ".surf") {
     return model::ModelFile::open(source).and_then([&](model::ModelFile model) {
       return export_points_of_model(std::make_shared<const model::ModelFile>(std::move(model)), target, *form, options);
     });

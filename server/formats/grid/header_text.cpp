@@ -1,7 +1,6 @@
 #include "grid/header_text.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "scan/text_tokens.h"
 
@@ -35,13 +34,6 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && scan::is_space(text.front())) text.remove_prefix(1);
   while (!text.empty() && scan::is_space(text.back())) text.remove_suffix(1);
   return text;
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {

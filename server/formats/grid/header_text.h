@@ -25,7 +25,6 @@ class HeaderLines {
 };
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);
-[[nodiscard]] std::string lower_case(std::string_view text);
 [[nodiscard]] std::vector<std::string_view> words_of(std::string_view text);
 
 /// All words as numbers; none if one is not a number. "nan" is a number.

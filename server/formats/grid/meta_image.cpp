@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/letter_case.h"
 #include "grid/header_text.h"
 #include "grid/readers.h"
 #include "scan/text_tokens.h"
@@ -25,7 +26,7 @@ struct MetaText {
 std::optional<std::pair<std::string, std::string>> split_line(std::string_view line) {
   const size_t equals = line.find('=');
   if (equals == std::string_view::npos) return std::nullopt;
-  return std::pair(lower_case(trimmed(line.substr(0, equals))), std::string(trimmed(line.substr(equals + 1))));
+  return std::pair(to_lower(trimmed(line.substr(0, equals))), std::string(trimmed(line.substr(equals + 1))));
 }
 
 /// ElementDataFile is the last key.
@@ -55,7 +56,7 @@ std::string_view value_of(const Keys& keys, std::initializer_list<std::string_vi
 }
 
 bool is_true(std::string_view text) {
-  const std::string word = lower_case(text);
+  const std::string word = to_lower(text);
   return word == "true" || word == "1" || word == "yes";
 }
 
@@ -196,12 +197,12 @@ void take_list(std::vector<std::filesystem::path> paths, StoredSamples& samples)
 /// The samples: behind the header, in one file, in the files of a list or of a pattern.
 Status find_files(const MetaText& text, const GridFile& file, StoredSamples& samples) {
   const std::string_view name = text.data_file;
-  if (lower_case(name) == "local") {
+  if (to_lower(name) == "local") {
     samples.file = file.file;
     samples.offset = text.after;
     return {};
   }
-  if (lower_case(scan::Tokens(name).next()) == "list") {
+  if (to_lower(scan::Tokens(name).next()) == "list") {
     Result<std::vector<std::filesystem::path>> paths = listed_files(file, text.after);
     if (!paths) return fail(std::move(paths.error()));
     take_list(std::move(*paths), samples);
@@ -241,7 +242,7 @@ bool looks_like_meta_image(std::string_view text) {
   HeaderLines lines(text.substr(0, 256));
   const auto entry = split_line(lines.next().value_or(""));
   const auto* known = entry ? std::find(std::begin(kFirstKeys), std::end(kFirstKeys), entry->first) : nullptr;
-  const std::string head = lower_case(text.substr(0, 4096));
+  const std::string head = to_lower(text.substr(0, 4096));
   return known != nullptr && known != std::end(kFirstKeys) && head.find("ndims") != std::string::npos;
 }
 

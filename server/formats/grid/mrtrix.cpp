@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/letter_case.h"
 #include "grid/header_text.h"
 #include "grid/readers.h"
 #include "scan/text_tokens.h"
@@ -48,7 +49,7 @@ Result<Keys> split_header(std::string_view text) {
     if (trimmed(*line) == "END") return keys;
     const size_t colon = line->find(':');
     if (colon == std::string_view::npos) return bad_header(kFormat, "line not understood", *line);
-    keys[lower_case(trimmed(line->substr(0, colon)))].emplace_back(trimmed(line->substr(colon + 1)));
+    keys[to_lower(trimmed(line->substr(0, colon)))].emplace_back(trimmed(line->substr(colon + 1)));
   }
   return fail(ErrorKind::kInvalidInput, "truncated: MRtrix header without END");
 }
@@ -97,7 +98,7 @@ Result<SampleType> parse_type(std::string_view text) {
       {"int64", ScalarType::kInt64},     {"uint64", ScalarType::kUint64}, {"float32", ScalarType::kFloat32},
       {"float64", ScalarType::kFloat64},
   };
-  const std::string word = lower_case(text);
+  const std::string word = to_lower(text);
   const bool big = word.ends_with("be");
   const bool ordered = big || word.ends_with("le");
   const std::string_view plain = std::string_view(word).substr(0, word.size() - (ordered ? 2 : 0));

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/letter_case.h"
 #include "grid/header_text.h"
 #include "grid/nrrd_axes.h"
 #include "grid/nrrd_text.h"
@@ -55,13 +56,13 @@ Result<ScalarType> parse_type(std::string_view text) {
       {"float", ScalarType::kFloat32},
       {"double", ScalarType::kFloat64},
   };
-  const auto type = kTypes.find(lower_case(text));
+  const auto type = kTypes.find(to_lower(text));
   if (type == kTypes.end()) return bad_header(kNrrd, "unknown type of samples", text);
   return type->second;
 }
 
 Result<Packing> parse_encoding(std::string_view text) {
-  const std::string name = lower_case(text);
+  const std::string name = to_lower(text);
   if (name == "raw") return Packing::kRaw;
   if (name == "text" || name == "txt" || name == "ascii") return Packing::kText;
   if (name == "gzip" || name == "gz") return Packing::kInflate;
@@ -72,7 +73,7 @@ Result<Packing> parse_encoding(std::string_view text) {
 /// Whether bytes are in the other order. One-byte samples have no order, and text has none.
 Result<bool> parse_endian(const NrrdFields& fields, ScalarType type, Packing packing) {
   if (scan::size_of(type) == 1 || packing == Packing::kText) return false;
-  const std::string name = lower_case(field(fields, "endian"));
+  const std::string name = to_lower(field(fields, "endian"));
   if (name == "big") return std::endian::native != std::endian::big;
   if (name == "little") return std::endian::native != std::endian::little;
   return bad_header(kNrrd, "no byte order, which samples of this type need", name);

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "grid/header_text.h"
 #include "scan/text_tokens.h"
 
@@ -18,7 +19,7 @@ Result<std::vector<std::optional<glm::dvec3>>> parse_vectors(std::string_view te
   for (std::string_view rest = trimmed(text); !rest.empty(); rest = trimmed(rest)) {
     if (!rest.starts_with('(')) {
       const std::string_view word = scan::Tokens(rest).next();
-      if (lower_case(word) != "none") return bad_header(kNrrd, "not a vector", rest);
+      if (to_lower(word) != "none") return bad_header(kNrrd, "not a vector", rest);
       vectors.emplace_back(std::nullopt);
       rest.remove_prefix(word.size());
       continue;
@@ -54,7 +55,7 @@ Status parse_kinds(const NrrdFields& fields, NrrdAxes& axes) {
     if (words.size() != axes.sizes.size()) {
       return bad_header(kNrrd, "not a word for each axis", field(fields, name));
     }
-    for (size_t i = 0; i < words.size(); ++i) use(i, lower_case(words[i]));
+    for (size_t i = 0; i < words.size(); ++i) use(i, to_lower(words[i]));
     return {};
   };
   if (Status status = take("kinds", [&](size_t i, std::string word) { axes.kinds[i] = std::move(word); }); !status) {
@@ -126,7 +127,7 @@ Result<NrrdSpace> parse_space(const NrrdFields& fields) {
   };
   NrrdSpace space;
   if (const std::string_view name = field(fields, "space"); !name.empty()) {
-    const auto known = kSpaces.find(lower_case(name));
+    const auto known = kSpaces.find(to_lower(name));
     if (known == kSpaces.end()) {
       return fail(ErrorKind::kUnsupported, "NRRD: not a space of three dimensions: " + scan::printable(name));
     }

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "base/letter_case.h"
 #include "grid/header_text.h"
 #include "scan/text_tokens.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 std::string field_name(std::string_view text) {
   std::string name;
-  for (const char c : lower_case(text)) {
+  for (const char c : to_lower(text)) {
     if (!scan::is_space(c)) name += c;
   }
   if (name == "centerings") name = "centers";

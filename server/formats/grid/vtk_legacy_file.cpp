@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "grid/header_text.h"
 #include "scan/text_tokens.h"
 #include "stream/byte_stream.h"
@@ -26,7 +27,7 @@ Result<ScalarType> parse_type(std::string_view text) {
       {"vtktypeint64", ScalarType::kInt64},  {"vtkidtype", ScalarType::kInt32},
       {"float", ScalarType::kFloat32},       {"double", ScalarType::kFloat64},
   };
-  const std::string name = lower_case(text);
+  const std::string name = to_lower(text);
   for (const auto& [known, type] : kTypes) {
     if (known == name) return type;
   }
@@ -58,7 +59,7 @@ class LegacyParser {
   Result<LegacyFile> parse() {
     lines_.next();  // "# vtk DataFile Version"
     lines_.next();  // a title
-    const std::string encoding = lower_case(next_filled_line());
+    const std::string encoding = to_lower(next_filled_line());
     if (encoding != "ascii" && encoding != "binary") return bad_header(kFormat, "neither ASCII nor BINARY", encoding);
     file_.binary = encoding == "binary";
     while (const std::optional<std::string_view> line = lines_.next()) {
@@ -88,7 +89,7 @@ class LegacyParser {
   Status parse_line(std::string_view line) {
     const Words words = words_of(line);
     if (words.empty()) return {};
-    const std::string keyword = lower_case(words[0]);
+    const std::string keyword = to_lower(words[0]);
     if (keyword == "dataset") return check_dataset(line, words);
     if (keyword == "dimensions") return take_dimensions(line, words);
     if (keyword == "spacing" || keyword == "aspect_ratio") return take_vector(line, words, file_.spacing);
@@ -129,7 +130,7 @@ class LegacyParser {
     if (!second) return bad_header(kFormat, "no size of cells", line);
     HeaderLines ahead = lines_;
     const Words next = words_of(ahead.next().value_or(""));
-    const bool by_offsets = !next.empty() && lower_case(next[0]) == "offsets";
+    const bool by_offsets = !next.empty() && to_lower(next[0]) == "offsets";
     // A point of POLYDATA as a vertex is no cell to anyone.
     if (keyword != "vertices") file_.cells += by_offsets && *first > 0 ? *first - 1 : *first;
     if (by_offsets) {
@@ -142,7 +143,7 @@ class LegacyParser {
 
   Status check_dataset(std::string_view line, const Words& words) {
     has_dataset_ = true;
-    if (words.size() > 1 && std::ranges::find(datasets_, lower_case(words[1])) != datasets_.end()) return {};
+    if (words.size() > 1 && std::ranges::find(datasets_, to_lower(words[1])) != datasets_.end()) return {};
     return fail(ErrorKind::kUnsupported, "VTK: not a regular grid: " + scan::printable(line));
   }
 
@@ -205,7 +206,7 @@ class LegacyParser {
   Status skip_table_name() {
     HeaderLines ahead = lines_;
     const std::optional<std::string_view> line = ahead.next();
-    if (line && lower_case(scan::Tokens(*line).next()) == "lookup_table") lines_ = ahead;
+    if (line && to_lower(scan::Tokens(*line).next()) == "lookup_table") lines_ = ahead;
     return {};
   }
 
@@ -225,7 +226,7 @@ class LegacyParser {
       if (!next) return fail(ErrorKind::kInvalidInput, "truncated: the VTK file ends within its arrays");
       const Words words = words_of(*next);
       if (words.empty()) continue;
-      if (lower_case(words[0]) == "metadata") {
+      if (to_lower(words[0]) == "metadata") {
         if (Status status = skip_metadata(); !status) return status;
         continue;
       }
@@ -291,8 +292,8 @@ bool is_vtk_legacy_point_set(std::string_view text) {
   HeaderLines lines(text.substr(0, 4096));
   while (const std::optional<std::string_view> line = lines.next()) {
     const std::vector<std::string_view> words = words_of(*line);
-    if (words.size() < 2 || lower_case(words[0]) != "dataset") continue;
-    return std::ranges::find(kVtkPointSets, lower_case(words[1])) != kVtkPointSets.end();
+    if (words.size() < 2 || to_lower(words[0]) != "dataset") continue;
+    return std::ranges::find(kVtkPointSets, to_lower(words[1])) != kVtkPointSets.end();
   }
   return false;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/letter_case.h"
 #include "grid/header_text.h"
 #include "grid/vtk_legacy_file.h"
 #include "grid/vtk_point_set.h"
@@ -153,7 +154,7 @@ Result<VtkPointSet> find_points(const stream::FilePtr& file) {
 // ---- columns
 
 bool is_named(const PointArray& array, std::initializer_list<std::string_view> names) {
-  return std::ranges::find(names, lower_case(array.facts.name)) != names.end();
+  return std::ranges::find(names, to_lower(array.facts.name)) != names.end();
 }
 
 bool may_be_normals(const PointArray& array) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/letter_case.h"
 #include "grid/header_text.h"
 #include "scan/text_tokens.h"
 
@@ -106,7 +107,7 @@ Result<StoredNumbers> find_numbers(const XmlFile& file, const XmlArray& array, c
   numbers.values = values;
   numbers.begin = array.text_begin;
   numbers.size = array.text_end - array.text_begin;
-  const std::string format = lower_case(attribute(array.attributes, "format"));
+  const std::string format = to_lower(attribute(array.attributes, "format"));
   numbers.text = format == "ascii";
   if (numbers.text) return numbers;  // the coding is that of bytes
   const Result<VtkBlockCoding> coding = parse_coding(file);

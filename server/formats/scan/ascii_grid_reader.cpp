@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <glm/vec2.hpp>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/letter_case.h"
 #include "scan/point_table.h"
 #include "scan/readers.h"
 #include "scan/text_tokens.h"
@@ -33,13 +33,6 @@ struct GridHeader {
   [[nodiscard]] bool has_value(double height) const { return std::isfinite(height) && height != no_value; }
 };
 
-std::string lower_case(std::string_view word) {
-  std::string lower(word);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
 tl::unexpected<Error> bad_grid(const std::string& what) {
   return fail(ErrorKind::kInvalidInput, "ASCII grid: " + what);
 }
@@ -55,7 +48,7 @@ Result<HeaderValues> read_values(Tokens& tokens) {
   HeaderValues values;
   while (true) {
     Tokens ahead = tokens;
-    const std::string word = lower_case(ahead.next());
+    const std::string word = to_lower(ahead.next());
     const auto* const name = std::find(kNames.begin(), kNames.end(), word);
     if (name == kNames.end()) return values;
     const std::string_view number = ahead.next();
@@ -221,7 +214,7 @@ class AsciiGridRows : public RowSource {
 
 bool looks_like_ascii_grid(std::string_view text) {
   Tokens tokens(text.substr(0, 256));
-  return lower_case(tokens.next()) == kNames[kColumns] && parse_number<double>(tokens.next());
+  return to_lower(tokens.next()) == kNames[kColumns] && parse_number<double>(tokens.next());
 }
 
 std::filesystem::path projection_file(const std::filesystem::path& grid) {

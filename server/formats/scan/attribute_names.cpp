@@ -1,8 +1,9 @@
 #include "scan/attribute_names.h"
 
 #include <array>
-#include <cctype>
 #include <utility>
+
+#include "base/letter_case.h"
 
 namespace surfcast::scan {
 namespace {
@@ -57,7 +58,7 @@ constexpr std::array kAliases = {
 std::string attribute_key(std::string_view name) {
   std::string key;
   for (const char c : name) {
-    if (c != '_' && c != ' ') key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (c != '_' && c != ' ') key += to_lower(c);
   }
   constexpr std::string_view kPrefix = "scalar";
   if (key.size() > kPrefix.size() && key.starts_with(kPrefix)) key.erase(0, kPrefix.size());

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/letter_case.h"
 #include "scan/e57_header.h"
 #include "scan/e57_pages.h"
 #include "scan/e57_streams.h"
@@ -53,7 +54,7 @@ std::string attribute_name(std::string_view field) {
   std::string name;
   for (const char c : field) {
     if (std::isupper(static_cast<unsigned char>(c)) != 0 && !name.empty()) name += '_';
-    name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    name += to_lower(c);
   }
   return name;
 }

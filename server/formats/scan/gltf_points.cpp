@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <limits>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
 #include "base/invalid_input.h"
+#include "base/letter_case.h"
 #include "scan/gltf_primitive.h"
 #include "scan/gltf_scene.h"
 #include "scan/move_points.h"
@@ -59,9 +59,7 @@ glm::vec3 factor_of(const Json& json, const Json& primitive) {
 /// position, the colour or the normal.
 std::string scalar_name(const std::string& attribute) {
   constexpr std::array<std::string_view, 9> kTaken{"x", "y", "z", "red", "green", "blue", "nx", "ny", "nz"};
-  std::string name = printable(std::string_view(attribute).substr(1));
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = to_lower(printable(std::string_view(attribute).substr(1)));
   return std::find(kTaken.begin(), kTaken.end(), name) == kTaken.end() ? name : "_" + name;
 }
 

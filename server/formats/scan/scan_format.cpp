@@ -1,12 +1,12 @@
 #include "scan/scan_format.h"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "scan/gltf_buffers.h"
 #include "scan/readers.h"
 #include "scan/text_tokens.h"
@@ -113,13 +113,6 @@ std::optional<ScanFormat> by_content(std::string_view text) {
   return std::nullopt;
 }
 
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 tl::unexpected<Error> unsupported(std::string_view what) {
   return fail(ErrorKind::kUnsupported, std::string(what));
 }
@@ -145,7 +138,7 @@ Result<ScanFormat> scan_format_of(std::span<const std::byte> bytes, const std::f
   for (const auto& [start, what] : kOtherContents) {
     if (text.starts_with(start)) return unsupported(what);
   }
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   for (const auto& [known, what] : kOtherExtensions) {
     if (extension == known) return unsupported(what);
   }

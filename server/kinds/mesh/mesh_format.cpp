@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstring>
 #include <string>
 #include <string_view>
 
+#include "base/letter_case.h"
 #include "mesh/ply_mesh.h"
 #include "scan/gltf_buffers.h"
 #include "scan/gltf_points.h"
@@ -17,13 +17,6 @@ namespace {
 
 /// Bytes that are looked at to tell text formats apart.
 constexpr size_t kLook = 65536;
-
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 /// Binary STL has no signature, and some files begin like those of text. The size decides: 84 bytes and 50 a triangle.
 bool is_binary_stl(std::span<const std::byte> bytes) {
@@ -74,7 +67,7 @@ std::optional<MeshFormat> mesh_format_of(std::span<const std::byte> bytes, const
     return is_ply_mesh(bytes, faces) ? std::optional(MeshFormat::kPly) : std::nullopt;
   }
   if (is_binary_stl(bytes) || is_text_stl(head)) return MeshFormat::kStl;
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   if (extension == ".gltf" || scan::is_gltf_text(head)) return unless_of_points(bytes, MeshFormat::kGltf);
   if (extension == ".obj" || is_obj(head)) return MeshFormat::kObj;
   if (extension == ".glb") return MeshFormat::kGlb;

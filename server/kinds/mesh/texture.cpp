@@ -1,7 +1,6 @@
 #include "mesh/texture.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -10,6 +9,7 @@
 #include <dlfcn.h>
 #include <webp/decode.h>
 
+#include "base/letter_case.h"
 #include "base/mapped_file.h"
 #include "mesh/decoder_module.h"
 #include "scan/text_tokens.h"
@@ -31,10 +31,7 @@ std::string reader_of(std::string_view head, const std::filesystem::path& file) 
   if (head.starts_with(std::string_view("II\x2A\0", 4)) || head.starts_with(std::string_view("MM\0\x2A", 4))) {
     return "tiff";
   }
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".tga" ? "targa" : "";
+  return lower_extension(file) == ".tga" ? "targa" : "";
 }
 
 Status check_size(uint64_t width, uint64_t height, const scan::DecodingLimit& limit) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -12,6 +11,8 @@
 #include <utility>
 
 #include <curl/curl.h>
+
+#include "base/letter_case.h"
 
 namespace surfcast::object_store {
 namespace {
@@ -44,10 +45,6 @@ struct Transfer {
   }
 };
 
-bool same_name(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
 std::string_view trimmed(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return {};
@@ -69,9 +66,9 @@ size_t take_header(char* data, size_t one, size_t count, void* user) {
   if (colon == std::string_view::npos) return line.size();
   const std::string_view name = line.substr(0, colon);
   const std::string value(trimmed(line.substr(colon + 1)));
-  if (same_name(name, "etag")) transfer.answer.etag = value;
-  if (same_name(name, "content-range")) transfer.answer.content_range = value;
-  if (same_name(name, "location")) transfer.answer.location = value;
+  if (equal_in_any_case(name, "etag")) transfer.answer.etag = value;
+  if (equal_in_any_case(name, "content-range")) transfer.answer.content_range = value;
+  if (equal_in_any_case(name, "location")) transfer.answer.location = value;
   return line.size();
 }
 

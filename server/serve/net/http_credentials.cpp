@@ -1,9 +1,9 @@
 #include "net/http_credentials.h"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 
+#include "base/letter_case.h"
 #include "protocol/url_query.h"
 
 namespace surfcast::net {
@@ -14,12 +14,6 @@ constexpr std::string_view kTokenProtocol = "surfcast.token.";
 /// RFC 6265bis, 4.1.3.2: with this prefix no other host and no plain connection can set it.
 constexpr std::string_view kCookie = "__Host-surfcast";
 constexpr std::string_view kPlainCookie = "surfcast";
-
-bool begins_with_in_any_case(std::string_view text, std::string_view lower) {
-  return text.size() >= lower.size() &&
-         std::equal(lower.begin(), lower.end(), text.begin(),
-                    [](char a, unsigned char b) { return a == static_cast<char>(std::tolower(b)); });
-}
 
 std::string_view trimmed(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
@@ -40,7 +34,7 @@ std::optional<std::string_view> find_item(std::string_view list, char separator,
 }  // namespace
 
 std::string_view token_of(const HttpCredentials& credentials) {
-  if (begins_with_in_any_case(credentials.authorization, kBearer)) {
+  if (equal_in_any_case(credentials.authorization.substr(0, kBearer.size()), kBearer)) {
     return trimmed(credentials.authorization.substr(kBearer.size()));
   }
   if (const auto token = find_item(credentials.protocols, ',', kTokenProtocol)) return *token;

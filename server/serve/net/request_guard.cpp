@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
-#include <cctype>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "net/upgrade.h"
 
 namespace surfcast::net {
 namespace {
 
 namespace ip = boost::asio::ip;
-
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  return lower;
-}
 
 /// The host of "HOST" or "HOST:PORT". That of "[::1]:80" is "::1".
 std::string_view without_port(std::string_view host) {
@@ -38,7 +32,7 @@ std::optional<RequestRefusal> refusal_of_framing(const RequestHead& head) {
   if (head.transfer_encodings == 0) return std::nullopt;
   if (head.version < 11) return refuse("HTTP/1.0 knows no Transfer-Encoding");
   if (head.content_length) return refuse("Transfer-Encoding and Content-Length exclude each other");
-  if (head.transfer_encodings > 1 || in_lower_case(head.transfer_encoding) != "chunked") {
+  if (head.transfer_encodings > 1 || !equal_in_any_case(head.transfer_encoding, "chunked")) {
     return refuse("the only Transfer-Encoding that is understood is chunked");
   }
   return std::nullopt;
@@ -70,9 +64,9 @@ std::optional<RequestRefusal> refusal_of_site(const RequestHead& head, const Gua
 }  // namespace
 
 bool is_own_host(std::string_view host, std::span<const std::string> names) {
-  const std::string name = in_lower_case(without_port(host));
+  const std::string name = to_lower(without_port(host));
   if (name == "localhost" || name.ends_with(".localhost") || is_address(name)) return true;
-  return std::ranges::any_of(names, [&](const std::string& own) { return own == "*" || in_lower_case(own) == name; });
+  return std::ranges::any_of(names, [&](const std::string& own) { return own == "*" || to_lower(own) == name; });
 }
 
 std::optional<RequestRefusal> refusal_of(const RequestHead& head, const GuardConfig& config) {

@@ -1,16 +1,12 @@
 #include "net/upgrade.h"
 
 #include <algorithm>
-#include <cctype>
 
+#include "base/letter_case.h"
 #include "protocol/hello.h"
 
 namespace surfcast::net {
 namespace {
-
-bool equal_in_any_case(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 
 bool offers(std::string_view list, std::string_view protocol) {
   while (!list.empty()) {

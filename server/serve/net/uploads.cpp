@@ -8,6 +8,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "access/secret.h"
+#include "base/letter_case.h"
 #include "protocol/errors.h"
 #include "service/model_name.h"
 
@@ -18,11 +19,6 @@ namespace fs = std::filesystem;
 
 /// Bytes of a name. Not a setting: file systems end at 255, and the temporary file's name is longer.
 constexpr size_t kLongestName = 200;
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// Whether a name stays within its folder, is not hidden, and can be listed as it is.
 bool is_plain(std::string_view name) {
@@ -42,7 +38,7 @@ tl::unexpected<Error> taken(const fs::path& target) {
 }
 
 bool ends_with_any(const fs::path& file, const std::vector<std::string>& extensions) {
-  const std::string name = lower(file.filename().string());
+  const std::string name = to_lower(file.filename().string());
   return std::ranges::any_of(extensions, [&](const std::string& extension) {
     return name.size() > extension.size() && name.ends_with(extension);
   });

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace surfcast {
+
+/// The letters A to Z become a to z, whatever the locale is; other bytes stay.
+constexpr char to_lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+[[nodiscard]] inline std::string to_lower(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = to_lower(c);
+  return lower;
+}
+
+/// Whether both are the same but for the case of the letters A to Z.
+[[nodiscard]] inline bool equal_in_any_case(std::string_view a, std::string_view b) {
+  return std::ranges::equal(a, b, [](char x, char y) { return to_lower(x) == to_lower(y); });
+}
+
+/// The extension of a file in lower case, with its dot; empty if there is none.
+[[nodiscard]] inline std::string lower_extension(const std::filesystem::path& file) {
+  return to_lower(file.extension().string());
+}
+
+}  // namespace surfcast
