@@ -175,9 +175,11 @@ void add_export_command(CLI::App& app, int interrupt, Status& outcome) {
                             "output",
                             "FILE");
   add("format", command->format, "format of the file", "las|laz|ply|csv|npy");
-  add("box", command->box,
-      "only points in a box, world coordinates, the lower corner first; of several boxes, points in any of them",
-      "X,Y,Z,X,Y,Z;...")
+  sub->add_option(
+         "--bounds,--box", command->box,
+         "only points in a box, world coordinates, the lower corner first; of several boxes, points in any of them")
+      ->envname(protocol::environment_name("box"))
+      ->type_name("X,Y,Z,X,Y,Z;...")
       ->join(';');
   add("corridor", command->corridor,
       "only points along a line, seen from above, in a corridor of this width, with @LOW,HIGH between these heights; "

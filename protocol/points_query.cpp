@@ -125,7 +125,7 @@ Status check_corridor(const wire::Corridor& corridor) {
 }  // namespace
 
 Status set_points_field(wire::GetPoints& points, std::string_view name, std::string_view text) {
-  if (name == "box") {
+  if (name == "box" || name == "bounds") {
     const bool set = for_each_part(text, [&points](std::string_view part) { return add_box(points, part); });
     return set ? Status() : not_of_form(name, "X,Y,Z,X,Y,Z of two corners, several with ; between them", text);
   }

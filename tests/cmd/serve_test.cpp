@@ -310,7 +310,7 @@ TEST_F(ServeTest, ARegionIsTheSameByEveryWay) {
     EXPECT_FALSE(content(file("tcp." + format)).empty());
     EXPECT_TRUE(content(file("tcp." + format)) == content(file("ws." + format)));
     std::string streamed =
-        client::run_program(program + url_ + "/square --box '2,3,-1,12.5,7,1' --output - --format " + format).output;
+        client::run_program(program + url_ + "/square --bounds '2,3,-1,12.5,7,1' --output - --format " + format).output;
     if (format == "laz") {  // a file states the place of the chunk table before its points, a stream at its end
       uint32_t points = 0;
       std::memcpy(&points, streamed.data() + 96, sizeof points);

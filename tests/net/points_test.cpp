@@ -218,7 +218,7 @@ TEST_F(PointsTest, OfAnEmptyRegionOrOneOutsideAreNone) {
   serve(scan_of(100));
   const glm::dvec3 between = kLattice.offset + glm::dvec3(0.1, 0.1, 20);
   for (const glm::dvec3& low : {between, glm::dvec3(-1)}) {
-    const std::string answer = fetch("box=" + box_text(low, low + 0.1));
+    const std::string answer = fetch("bounds=" + box_text(low, low + 0.1));
     EXPECT_THAT(answer, AllOf(StartsWith("HTTP/1.1 200"), HasSubstr("X-Surfcast-Points: 0")));
     EXPECT_EQ(body_of(answer), "x,y,z,red,green,blue,number\n");
     EXPECT_THAT(body_of(fetch("format=las&box=" + box_text(low, low + 0.1))), StartsWith("LASF"));
