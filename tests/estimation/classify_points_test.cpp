@@ -69,6 +69,8 @@ TEST(ClassifyPoints, RadiiAreLimitedByTheSurfacesAround) {
   EXPECT_EQ(limited_radius(PointKind::kRoughSurface, 1.1, 1), 1) << "its width is roughness, no gap";
   EXPECT_EQ(limited_radius(PointKind::kLayer, 0.6, 1), 0.6);
   EXPECT_EQ(limited_radius(PointKind::kLayer, 0.8, 1), 0.7);
+  EXPECT_EQ(limited_radius(PointKind::kSheet, 3, 1), 3) << "its points are sparser than those around";
+  EXPECT_EQ(limited_radius(PointKind::kSheet, 90, 1), 3.5);
   EXPECT_EQ(limited_radius(PointKind::kScatter, 0.2, 1), 0.2);
   EXPECT_EQ(limited_radius(PointKind::kScatter, 90, 1), 0.28);
   EXPECT_EQ(limited_radius(PointKind::kThread, 0.4, 1), 0.4) << "a line stays closed";

@@ -26,6 +26,8 @@ constexpr double kWidestDisc = 2;
 constexpr double kWidestRoughDisc = 1;
 /// The layers close a surface together, with half the diagonal of a cell of its sampling: 0.65 radii.
 constexpr double kWidestLayer = 0.7;
+/// Its points are sparser than those around.
+constexpr double kWidestSheet = 3.5;
 constexpr double kWidestScatter = 0.28;
 constexpr double kWidestThread = 0.5;
 
@@ -67,6 +69,8 @@ double limited_radius(PointKind kind, double radius, double around) {
       return std::min(radius, kWidestScatter * around);
     case PointKind::kThread:
       return std::min(radius, kWidestThread * around);
+    case PointKind::kSheet:
+      return std::min(radius, kWidestSheet * around);
     case PointKind::kStated:
       break;
   }

@@ -18,6 +18,7 @@ enum class PointKind : uint8_t {
   kLayer,         ///< the same, in one of the thin layers of a surface that was measured in steps of depth
   kScatter,       ///< lies on no surface (leaves, strays): a round splat that faces the eye
   kThread,        ///< the same, in a line of points (wires, single scan lines)
+  kSheet,         ///< an oriented disc on a steep plane of few points beside surfaces of many
   kStated,        ///< an oriented disc whose radius the file states
 };
 

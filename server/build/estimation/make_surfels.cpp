@@ -17,6 +17,7 @@
 #include "estimation/neighbour_spread.h"
 #include "estimation/neighbours.h"
 #include "estimation/spacing.h"
+#include "estimation/sparse_sheets.h"
 
 namespace surfcast::estimation {
 namespace {
@@ -40,6 +41,7 @@ struct SiteFacts {
   std::vector<PointKind> kinds;
   /// The largest radius of sites that are known to lie on a surface, world units; 0 elsewhere. Empty if there are none.
   std::vector<float> widest;
+  bool z_up = true;  ///< or y
 
   [[nodiscard]] bool known_surface(size_t site) const { return !widest.empty() && widest[site] > 0; }
 
@@ -65,6 +67,7 @@ SiteFacts find_site_facts(const surfel::SurfelCloud& cloud, const Sites& sites, 
   const bool any_known = !cloud.normals.empty() || std::any_of(frame.sensors.begin(), frame.sensors.end(),
                                                                [](const auto& sensor) { return sensor.has_value(); });
   SiteFacts facts(sites.size(), any_known);
+  facts.z_up = cloud.z_up;
   const bool any_surface = std::any_of(frame.surface_steps.begin(), frame.surface_steps.end(),
                                        [](const auto& step) { return step.has_value(); });
   if (any_surface) facts.widest.resize(sites.size());
@@ -179,6 +182,21 @@ void settle_layers(const NeighbourGraph& graph, std::span<const glm::vec3> norma
   });
 }
 
+/// The neighbours of a site on a sheet become those on the same sheet. A scanner that is known stands before the walls,
+/// and the points on them are dense.
+void settle_sheets(const Sites& sites, SiteFacts& facts, Findings& findings) {
+  const auto unknown = [](SiteDirection known) { return known == SiteDirection::kUnknown; };
+  if (std::ranges::none_of(facts.known, unknown)) return;
+  const glm::vec3 up = facts.z_up ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  for (const SheetSite& sheet : find_sparse_sheets({sites, findings.graph, facts.kinds, findings.normals, up})) {
+    if (!unknown(facts.known[sheet.site])) continue;
+    facts.kinds[sheet.site] = PointKind::kSheet;
+    findings.normals[sheet.site] = sheet.normal;
+    findings.guesses[sheet.site] = sheet.guess;
+    std::ranges::copy(sheet.neighbours, findings.graph.ids.begin() + static_cast<std::ptrdiff_t>(sheet.site * kDegree));
+  }
+}
+
 /// Sets `facts.kinds`, too, if radii are estimated.
 Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) {
   Findings findings{{}, stored_normals(facts), std::vector<RadiusGuess>(radii ? sites.size() : 0)};
@@ -198,6 +216,7 @@ Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) 
     findings.guesses[site] = guess_radius(offsets, kDegree, findings.normals[site], sites.unit);
   });
   if (radii) settle_layers(findings.graph, findings.normals, facts.kinds);
+  if (radii) settle_sheets(sites, facts, findings);
   return findings;
 }
 
