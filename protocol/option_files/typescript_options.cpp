@@ -9,7 +9,7 @@ constexpr size_t kLineWidth = 120;
 
 constexpr std::string_view kHead = R"(// Made by option_files from the table in protocol/picture_fields.cpp.
 import type { MessageInitShape } from '@bufbuild/protobuf';
-import type { Rgb } from '../state/display_options';
+import type { Rgb } from '../state/rgb';
 import * as plain from '../state/plain_values';
 import type { DrawPictureSchema } from './surfcast_pb';
 

@@ -12,15 +12,17 @@ import json
 import threading
 from collections.abc import Callable, Mapping
 from importlib import import_module, resources
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _navigation
-from ._sync import Model
 from ._values import Camera, Hit
 from ._view import Frame, View
 from .errors import ConnectionLost, Error
+
+if TYPE_CHECKING:
+    from ._sync import Model, Runner
 
 _TARGET = "surfcast.view"
 _TYPES = {"png": "image/png", "jpg": "image/jpeg", "webp": "image/webp"}
@@ -169,7 +171,7 @@ class Widget:
     ) -> None:
         self.resolution = resolution
         self.hit: Hit | None = None
-        self.runner = model._runner
+        self.runner: Runner = model._runner
         self._model = model
         self._first = camera
         self._camera = camera

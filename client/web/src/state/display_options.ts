@@ -24,12 +24,6 @@ export interface Clip {
   readonly inverted: boolean; // hides the points inside
 }
 
-export interface Rgb {
-  readonly red: number;
-  readonly green: number;
-  readonly blue: number;
-}
-
 /** How the model is shown, apart from the camera: plain options, and those with a structure. */
 export interface DisplayOptions extends PlainOptions {
   readonly source: ColorSourceName;
@@ -71,11 +65,3 @@ export const defaultDisplay: DisplayOptions = {
 /** Whether what the transfer function shows is drawn. */
 export const showsMedium = ({ medium, surfaces, slices, transfer }: DisplayOptions): boolean =>
   medium ?? (transfer !== defaultTransfer || (surfaces.length === 0 && slices.length === 0));
-
-export const toHex = (color: Rgb): string =>
-  '#' + [color.red, color.green, color.blue].map((part) => part.toString(16).padStart(2, '0')).join('');
-
-export function fromHex(text: string): Rgb {
-  const value = Number.parseInt(text.slice(1), 16);
-  return { red: (value >> 16) & 255, green: (value >> 8) & 255, blue: value & 255 };
-}

@@ -1,4 +1,4 @@
-import type { Rgb } from './display_options';
+import type { Rgb } from './rgb';
 
 /** The values of plain options, and their texts in links. What is missing or wrong is undefined. */
 export type PlainValue = string | number | boolean | Rgb | undefined;

@@ -1,16 +1,10 @@
 import type { JSX } from 'preact';
 import { choices, defaultPlain } from '../generated/plain_options';
 import { formatNumber } from '../measure/format';
-import {
-  colorSources,
-  fromHex,
-  toHex,
-  type ColorSourceName,
-  type DisplayOptions,
-  type Rgb,
-} from '../state/display_options';
+import { colorSources, type ColorSourceName, type DisplayOptions } from '../state/display_options';
 import { classColor, className, gradientOf } from '../state/palette';
 import { attributeNames, attributeRange } from '../state/ellipsoids';
+import { fromHex, toHex, type Rgb } from '../state/rgb';
 import { description, display, ellipsoids, hasSurfels } from '../state/store';
 import { Choices, NumberField, Section, Select, Slider } from './controls';
 import { GlyphSections } from './glyph_sections';

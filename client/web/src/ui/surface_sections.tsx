@@ -1,6 +1,7 @@
 import type { JSX } from 'preact';
 import type { VolumeDescription } from '../generated/surfcast_pb';
-import { fromHex, showsMedium, toHex, type DisplayOptions } from '../state/display_options';
+import { showsMedium, type DisplayOptions } from '../state/display_options';
+import { fromHex, toHex } from '../state/rgb';
 import { display } from '../state/store';
 import { decimalsFor } from '../state/volume';
 import {

@@ -1,6 +1,6 @@
 import type { JSX } from 'preact';
 import { useRef, useState } from 'preact/hooks';
-import { fromHex, toHex, type Rgb } from '../state/display_options';
+import { fromHex, toHex, type Rgb } from '../state/rgb';
 import {
   addPoint,
   barHeights,

@@ -1,5 +1,5 @@
 import type { Vector } from '../camera/vector';
-import type { Rgb } from '../state/display_options';
+import type { Rgb } from '../state/rgb';
 
 /** Iso-surfaces and slices of volumes, and their texts: those of the parameters `iso` and `slice`. */
 

@@ -1,4 +1,4 @@
-import type { Rgb } from '../state/display_options';
+import type { Rgb } from '../state/rgb';
 
 export const presets = ['auto', 'gray', 'ct-bone', 'ct-soft', 'mr'] as const;
 export type PresetName = (typeof presets)[number];

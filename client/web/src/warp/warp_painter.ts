@@ -1,5 +1,5 @@
 import type { Projection } from '../camera/projection';
-import type { Rgb } from '../state/display_options';
+import type { Rgb } from '../state/rgb';
 import type { DepthPlane } from './depth_plane';
 import * as shaders from './shaders';
 import { clipMatrix, rowMatrix, warpBetween } from './warp_camera';
