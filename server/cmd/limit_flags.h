@@ -7,7 +7,7 @@
 
 #include "cmd/scan_builds.h"
 #include "cmd/scan_cache.h"
-#include "net/server.h"
+#include "net/server_config.h"
 #include "net/static_files.h"
 #include "render/renderer.h"
 #include "service/render_service.h"

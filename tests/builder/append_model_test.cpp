@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "builder/build_model.h"
 #include "builder/model_surfels.h"
 #include "builder/text_scan.h"
 #include "model/model_file.h"

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "builder/build_model.h"
 #include "builder/text_scan.h"
 #include "builder/work_folder.h"
 #include "model/test_folder.h"

@@ -6,7 +6,8 @@
 #include <span>
 
 #include "base/result.h"
-#include "builder/build_model.h"
+#include "builder/build_options.h"
+#include "builder/build_report.h"
 #include "builder/place_inputs.h"
 #include "estimation/stated_radii.h"
 #include "scan/selection.h"

@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <span>
 
-#include "builder/build_model.h"
+#include "builder/build_options.h"
+#include "builder/build_report.h"
 #include "builder/model_output.h"
 #include "builder/stage_clock.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "builder/build_model.h"
+#include "builder/build_report.h"
 
 namespace surfcast::builder {
 

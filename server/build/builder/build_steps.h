@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "builder/build_model.h"
 #include "builder/build_plan.h"
+#include "builder/build_report.h"
 
 namespace surfcast::builder {
 

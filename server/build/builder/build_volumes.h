@@ -4,7 +4,8 @@
 #include <span>
 
 #include "base/result.h"
-#include "builder/build_model.h"
+#include "builder/build_options.h"
+#include "builder/build_report.h"
 #include "builder/model_output.h"
 #include "builder/stage_clock.h"
 

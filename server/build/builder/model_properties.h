@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "builder/build_inputs.h"
-#include "builder/build_model.h"
+#include "builder/build_report.h"
 #include "estimation/stated_radii.h"
 #include "surfel/surfel_cloud.h"
 

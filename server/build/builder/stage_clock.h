@@ -3,7 +3,7 @@
 #include <mutex>
 
 #include "base/stopwatch.h"
-#include "builder/build_model.h"
+#include "builder/build_report.h"
 
 namespace surfcast::builder {
 

@@ -16,7 +16,7 @@
 #include "net/gatekeeper.h"
 #include "net/kept_sessions.h"
 #include "net/metrics.h"
-#include "net/server.h"
+#include "net/server_config.h"
 #include "service/render_service.h"
 #include "service/worker_pool.h"
 
