@@ -5,7 +5,8 @@
 namespace surfcast::model {
 namespace {
 
-constexpr double kTail = 0.002;
+constexpr double kTail = 0.005;
+constexpr double kBeyond = 0.1;
 constexpr double kMaxLeftOut = 0.1;
 
 /// The number of the slab's items below an elevation.
@@ -37,8 +38,10 @@ ElevationRange elevation_range(std::span<const ElevationSlab> slabs) {
     all = {std::min(all.low, slab.range.low), std::max(all.high, slab.range.high)};
     items += slab.items;
   }
-  const ElevationRange most{elevation_above(slabs, kTail * items, all),
-                            elevation_above(slabs, (1 - kTail) * items, all)};
+  const double low = elevation_above(slabs, kTail * items, all);
+  const double high = elevation_above(slabs, (1 - kTail) * items, all);
+  const double beyond = kBeyond * (high - low);
+  const ElevationRange most{std::max(low - beyond, all.low), std::min(high + beyond, all.high)};
   const bool few_left_out = most.high - most.low >= (1 - kMaxLeftOut) * (all.high - all.low);
   return few_left_out || most.low >= most.high ? all : most;
 }

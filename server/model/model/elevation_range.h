@@ -18,9 +18,9 @@ struct ElevationSlab {
 };
 
 /// The elevations of the items of these blocks but for outliers, such as birds above an airborne scan and multiple
-/// echoes below it: between the 0.2nd and the 99.8th percentile, if this leaves out more than a tenth of all
-/// elevations, else all of them. The items of a block count as evenly distributed over its height. {0, 0} without
-/// blocks.
+/// echoes below it: from the 0.5th to the 99.5th percentile and a tenth of that on either side, if this leaves out
+/// more than a tenth of all elevations, else all of them. The items of a block count as evenly distributed over its
+/// height. {0, 0} without blocks.
 ElevationRange elevation_range(std::span<const ElevationSlab> slabs);
 
 }  // namespace surfcast::model
