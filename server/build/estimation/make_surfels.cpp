@@ -111,9 +111,7 @@ bool all_stated(const std::vector<float>& radii) {
 
 /// World units, within the range of float.
 float scatter_radius_of(const Sites& sites, const NeighbourGraph& graph, uint32_t site) {
-  constexpr size_t kThird = 2;
-  const double third = glm::distance(sites.positions[site], sites.positions[graph.of(site)[kThird]]);
-  return to_radius(scatter_radius(third) * sites.unit);
+  return to_radius(scatter_radius(third_distance(sites, graph, site)) * sites.unit);
 }
 
 /// What each surfel is, and how large it is as such. `on_surface`: the radius of each site if it is a disc.

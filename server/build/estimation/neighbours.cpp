@@ -13,7 +13,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/vector_clones.h"
-#include "estimation/nearest_list.h"
+#include "estimation/nearest_in_tree.h"
 #include "geometry/morton_tree.h"
 
 namespace surfcast::estimation {
@@ -37,7 +37,6 @@ constexpr size_t kPadding = 16;
 /// Farther from every candidate than any other: its squared distance is infinite.
 constexpr float kNowhere = 1e30F;
 
-using Nearest = NearestList<kLargestDegree>;
 using NearestIds = std::array<uint32_t, kMaxSorted>;
 
 /// More than any squared distance.
@@ -282,14 +281,8 @@ class Search {
   }
 
   void search_alone(uint32_t site) const {
-    Nearest list(degree_);
-    double bound = list.bound();
-    tree_.nearest_first(sites_.positions[site], bound, [&](const Run& run) {
-      for (uint32_t i = run.first; i < run.last; ++i) {
-        if (i != site) list.add({distance_between(site, i), i});
-      }
-      bound = list.bound();
-    });
+    const auto list = nearest_in_tree<kLargestDegree>(tree_, sites_.positions, sites_.positions[site], degree_,
+                                                      [site](uint32_t i) { return i == site; });
     std::array<uint32_t, kLargestDegree> ids;
     const auto end =
         std::transform(list.all().begin(), list.all().end(), ids.begin(), [](const Found& f) { return f.second; });
@@ -308,7 +301,7 @@ size_t degree_for(const Sites& sites, size_t wanted) {
 
 void search_all(const Sites& sites, size_t degree, const NeighbourVisitor& use) {
   if (degree_for(sites, degree) == 0) return;
-  const MortonTree tree(sites.positions, codes_of(sites), {}, kLeafSites);
+  const MortonTree tree(sites.positions, codes_of(sites.positions), {}, kLeafSites);
   const Search search(sites, tree, degree_for(sites, degree), use);
   const std::vector<Run> leaves = tree.leaves();
   tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t i) { search.search(leaves[i]); });
@@ -324,6 +317,11 @@ void for_each_neighbourhood(const Sites& sites, size_t degree, const std::functi
     });
     use({site, ids, {distances.begin(), end}});
   });
+}
+
+double third_distance(const Sites& sites, const NeighbourGraph& graph, uint32_t site) {
+  constexpr size_t kThird = 2;
+  return glm::distance(sites.positions[site], sites.positions[graph.of(site)[kThird]]);
 }
 
 NeighbourGraph find_neighbours(const Sites& sites, size_t degree) {

@@ -33,6 +33,10 @@ struct NeighbourGraph {
   [[nodiscard]] std::span<const uint32_t> of(size_t site) const { return {ids.data() + site * degree, degree}; }
 };
 
+/// The distance of a site to its third nearest, which tells how dense the sites are; paired echoes do not affect it.
+/// Local units. There must be so many neighbours.
+double third_distance(const Sites& sites, const NeighbourGraph& graph, uint32_t site);
+
 /// Called with a site and its nearest other sites, nearest first. Several sites are visited at the same time.
 using NeighbourVisitor = std::function<void(uint32_t site, std::span<const uint32_t> neighbours)>;
 

@@ -150,10 +150,10 @@ Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& box) {
   return sites;
 }
 
-std::vector<uint64_t> codes_of(const Sites& sites) {
-  std::vector<uint64_t> codes(sites.size());
-  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
-    glm::dvec3 position = sites.positions[i];
+std::vector<uint64_t> codes_of(std::span<const glm::dvec3> positions) {
+  std::vector<uint64_t> codes(positions.size());
+  tbb::parallel_for(size_t{0}, positions.size(), [&](size_t i) {
+    glm::dvec3 position = positions[i];
     codes[i] = enter_cell(position);
   });
   return codes;

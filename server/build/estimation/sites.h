@@ -37,7 +37,8 @@ struct Sites {
 /// `frame` must contain all positions.
 Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& frame);
 
-/// The Morton codes of the sites, ascending, in cells of 2^-21 local units.
-std::vector<uint64_t> codes_of(const Sites& sites);
+/// The Morton codes of local positions, in cells of 2^-21 local units. They ascend if the positions are in the order of
+/// sites.
+std::vector<uint64_t> codes_of(std::span<const glm::dvec3> positions);
 
 }  // namespace surfcast::estimation

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <optional>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "estimation/nearest_list.h"
+#include "estimation/nearest_in_tree.h"
 #include "estimation/neighbour_offsets.h"
 #include "estimation/neighbour_spread.h"
 #include "geometry/morton_tree.h"
@@ -51,10 +52,9 @@ double distance(const SheetSearch& search, uint32_t a, uint32_t b) {
 
 /// The distance of each site to its third nearest.
 std::vector<float> find_third_distances(const SheetSearch& search) {
-  constexpr size_t kThird = 2;
   std::vector<float> thirds(search.sites.size());
   tbb::parallel_for(uint32_t{0}, static_cast<uint32_t>(thirds.size()), [&](uint32_t site) {
-    thirds[site] = static_cast<float>(distance(search, site, search.graph.of(site)[kThird]));
+    thirds[site] = static_cast<float>(third_distance(search.sites, search.graph, site));
   });
   return thirds;
 }
@@ -134,23 +134,14 @@ Candidates find_candidates(const SheetSearch& search) {
 class CandidateTree {
  public:
   CandidateTree(const Sites& sites, std::span<const uint32_t> members)
-      : members_(members),
-        positions_(positions_of(sites, members)),
-        tree_(positions_, codes_of(Sites{positions_, {}, sites.unit})) {}
+      : members_(members), positions_(positions_of(sites, members)), tree_(positions_, codes_of(positions_)) {}
 
   /// The candidates nearest to a site, without itself, nearest first.
   [[nodiscard]] std::array<uint32_t, kWideNeighbours> nearest(const Sites& sites, uint32_t site) const {
-    const glm::dvec3& from = sites.positions[site];
-    NearestList<kWideNeighbours> nearest(kWideNeighbours);
-    double bound = nearest.bound();
-    tree_.nearest_first(from, bound, [&](const geometry::MortonTree::Run& run) {
-      for (uint32_t i = run.first; i < run.last; ++i) {
-        if (members_[i] != site) nearest.add({squared_distance(positions_[i], from), members_[i]});
-      }
-      bound = nearest.bound();
-    });
+    const auto nearest = nearest_in_tree<kWideNeighbours>(tree_, positions_, sites.positions[site], kWideNeighbours,
+                                                          [&](uint32_t i) { return members_[i] == site; });
     std::array<uint32_t, kWideNeighbours> found{};
-    std::ranges::transform(nearest.all(), found.begin(), &Found::second);
+    std::ranges::transform(nearest.all(), found.begin(), [this](const Found& other) { return members_[other.second]; });
     return found;
   }
 
@@ -166,17 +157,12 @@ class CandidateTree {
   geometry::MortonTree tree_;
 };
 
-bool is_broad(const Spread& spread) {
-  return spread.middle >= kBroad * spread.largest;
-}
-
 /// The steep plane through a site and its neighbours, if they lie on one.
 std::optional<glm::vec3> steep_plane(const SheetSearch& search, const NeighbourOffsets& offsets) {
   const Covariances covariances = covariances_of(offsets);
-  const Spread near = spread_of(covariances.near);
   const Spread wide = spread_of(covariances.wide);
-  const bool flat = kind_of(near, wide) == PointKind::kSurface;
-  if (!flat || !is_broad(wide)) return std::nullopt;
+  const bool flat = kind_of(spread_of(covariances.near), wide) == PointKind::kSurface;
+  if (!flat || wide.middle < kBroad * wide.largest) return std::nullopt;
   const glm::vec3 normal(least_axis(covariances.wide, wide.least));
   return is_steep(search, normal) ? std::optional(normal) : std::nullopt;
 }
@@ -208,10 +194,16 @@ std::vector<SheetSite> sites_on_planes(const SheetSearch& search, const Candidat
   return all;
 }
 
+/// The normal of a site: that of its sheet if it may be on one. `sheets` ascend.
+const glm::vec3& normal_of(const SheetSearch& search, std::span<const SheetSite> sheets, uint32_t site) {
+  const auto sheet = std::ranges::lower_bound(sheets, site, {}, &SheetSite::site);
+  return sheet != sheets.end() && sheet->site == site ? sheet->normal : search.normals[site];
+}
+
 /// True if most neighbours have parallel planes.
-bool is_shared_plane(const SheetSite& sheet, std::span<const glm::vec3> normals) {
+bool is_shared_plane(const SheetSearch& search, std::span<const SheetSite> sheets, const SheetSite& sheet) {
   const auto agreeing = std::ranges::count_if(sheet.neighbours, [&](uint32_t other) {
-    return std::abs(glm::dot(sheet.normal, normals[other])) > kParallelPlanes;
+    return std::abs(glm::dot(sheet.normal, normal_of(search, sheets, other))) > kParallelPlanes;
   });
   return agreeing >= kAgreeingPlanes;
 }
@@ -222,11 +214,11 @@ std::vector<SheetSite> find_sparse_sheets(const SheetSearch& search) {
   if (search.graph.degree < kNearNeighbours) return {};
   const Candidates candidates = find_candidates(search);
   if (candidates.members.size() <= kWideNeighbours || candidates.tested.empty()) return {};
-  std::vector<SheetSite> sheets = sites_on_planes(search, candidates);
-  std::vector<glm::vec3> normals(search.normals.begin(), search.normals.end());
-  for (const SheetSite& sheet : sheets) normals[sheet.site] = sheet.normal;
-  std::erase_if(sheets, [&](const SheetSite& sheet) { return !is_shared_plane(sheet, normals); });
-  return sheets;
+  const std::vector<SheetSite> sheets = sites_on_planes(search, candidates);
+  std::vector<SheetSite> shared;
+  std::ranges::copy_if(sheets, std::back_inserter(shared),
+                       [&](const SheetSite& sheet) { return is_shared_plane(search, sheets, sheet); });
+  return shared;
 }
 
 }  // namespace surfcast::estimation

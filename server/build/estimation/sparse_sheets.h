@@ -30,7 +30,7 @@ struct SheetSearch {
   glm::vec3 up{0, 0, 1};
 };
 
-/// Scans from the air have few points on walls. Beside a roof or the ground, most of the nearest neighbours of such a
+/// Airborne scans have few points on walls. Beside a roof or the ground, most of the nearest neighbours of such a
 /// point are theirs, and it looks like scatter or like a part of them. This finds steep planes among the points that
 /// are not on such surfaces: scatter, points that are much farther from their neighbours than these are from theirs,
 /// and the walls that are known. Sites ascend. The result is the same for any number of threads.

@@ -14,7 +14,7 @@
 
 #include "base/hash.h"
 #include "base/vector_clones.h"
-#include "estimation/nearest_list.h"
+#include "estimation/nearest_in_tree.h"
 #include "geometry/morton.h"
 #include "geometry/morton_tree.h"
 
@@ -194,13 +194,7 @@ struct SurfaceSpacing::Index {
   [[nodiscard]] size_t degree() const { return std::min(kNearest, radii.size()); }
 
   [[nodiscard]] Nearest nearest(const glm::dvec3& local) const {
-    Nearest nearest(degree());
-    double bound = nearest.bound();
-    tree->nearest_first(local, bound, [&](const MortonTree::Run& run) {
-      for (uint32_t i = run.first; i < run.last; ++i) nearest.add({squared_distance(positions[i], local), i});
-      bound = nearest.bound();
-    });
-    return nearest;
+    return nearest_in_tree<kNearest>(*tree, positions, local, degree(), [](uint32_t) { return false; });
   }
 
   [[nodiscard]] float median(const Nearest& nearest) const {

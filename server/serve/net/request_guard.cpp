@@ -66,7 +66,7 @@ std::optional<RequestRefusal> refusal_of_site(const RequestHead& head, const Gua
 bool is_own_host(std::string_view host, std::span<const std::string> names) {
   const std::string name = to_lower(without_port(host));
   if (name == "localhost" || name.ends_with(".localhost") || is_address(name)) return true;
-  return std::ranges::any_of(names, [&](const std::string& own) { return own == "*" || to_lower(own) == name; });
+  return std::ranges::any_of(names, [&](const std::string& own) { return own == "*" || equal_in_any_case(own, name); });
 }
 
 std::optional<RequestRefusal> refusal_of(const RequestHead& head, const GuardConfig& config) {
