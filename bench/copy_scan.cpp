@@ -20,7 +20,7 @@ constexpr size_t kPiece = size_t{32} << 20;
 
 Status copy(const MappedFile& input, const char* output) {
   Result<AtomicFile> file = AtomicFile::create(output);
-  if (!file) return surfcast::fail(std::move(file.error()));
+  if (!file) return surfcast::fail(file);
   for (size_t at = 0; at < input.bytes().size(); at += kPiece) {
     const size_t size = std::min(kPiece, input.bytes().size() - at);
     if (Status status = file->append(input.bytes().subspan(at, size)); !status) return status;
@@ -32,9 +32,9 @@ Status copy(const MappedFile& input, const char* output) {
 Status run(const char* input, const char* output) {
   const surfcast::Stopwatch stopwatch;
   const Result<MappedFile> file = MappedFile::open(input);
-  if (!file) return surfcast::fail(file.error());
+  if (!file) return surfcast::fail(file);
   const Result<surfcast::scan::LasHeader> header = surfcast::scan::parse_las_header(file->bytes());
-  if (!header) return surfcast::fail(header.error());
+  if (!header) return surfcast::fail(header);
   if (Status status = copy(*file, output); !status) return status;
   std::cout << static_cast<double>(header->count) / stopwatch.seconds() << " points/s\n";
   return {};

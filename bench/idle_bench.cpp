@@ -23,7 +23,7 @@ Status measure(int process, const protocol::Endpoint& server, size_t count) {
   const uint64_t before = resident_bytes(process);
   for (size_t i = 0; i < count; ++i) {
     Result<client::ServerConnection> connection = client::ServerConnection::open(server, {});
-    if (!connection) return fail(connection.error());
+    if (!connection) return fail(connection);
     connections.push_back(std::move(*connection));
   }
   std::this_thread::sleep_for(std::chrono::seconds(2));
@@ -37,7 +37,7 @@ Status measure(int process, const protocol::Endpoint& server, size_t count) {
 
 int run(int process, const std::string& address, size_t count) {
   const Result<protocol::Endpoint> server = protocol::parse_endpoint(address);
-  const Status status = server ? measure(process, *server, count) : fail(server.error());
+  const Status status = server ? measure(process, *server, count) : fail(server);
   if (status) return 0;
   std::fprintf(stderr, "idle_bench: %s\n", status.error().message.c_str());
   return 1;

@@ -24,7 +24,7 @@ Status decode_all(const laz::LazFile& file, std::vector<std::byte>& records) {
   for (const laz::Chunk& chunk : file.chunks()) {
     records.resize(chunk.count * file.record_length());
     Result<laz::LazChunkReader> reader = file.read_chunk(chunk);
-    if (!reader) return fail(reader.error());
+    if (!reader) return fail(reader);
     if (Status status = reader->read(records); !status) return status;
   }
   return {};
@@ -35,7 +35,7 @@ Result<double> median_seconds(const laz::LazFile& file) {
   std::vector<std::byte> records;
   for (int run = 0; run < 5; ++run) {
     const double start = processor_seconds();
-    if (Status status = decode_all(file, records); !status) return fail(status.error());
+    if (Status status = decode_all(file, records); !status) return fail(status);
     seconds.push_back(processor_seconds() - start);
   }
   std::nth_element(seconds.begin(), seconds.begin() + 2, seconds.end());
@@ -44,14 +44,14 @@ Result<double> median_seconds(const laz::LazFile& file) {
 
 Status measure(const char* path) {
   const Result<MappedFile> mapped = MappedFile::open(path);
-  if (!mapped) return fail(mapped.error());
+  if (!mapped) return fail(mapped);
   const Result<scan::LasHeader> header = scan::parse_las_header(mapped->bytes());
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   const laz::LazPoints points = {header->point_format, header->record_length, header->count, header->data_offset};
   const Result<laz::LazFile> file = laz::LazFile::open(mapped->bytes(), points, header->laszip_record);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const Result<double> seconds = median_seconds(*file);
-  if (!seconds) return fail(seconds.error());
+  if (!seconds) return fail(seconds);
   const auto count = static_cast<double>(header->count);
   std::printf("%s: format %d, %.0f points of %.1f coded bytes, %.3f s, %.2f million points per second\n", path,
               header->point_format, count, static_cast<double>(mapped->bytes().size()) / count, *seconds,

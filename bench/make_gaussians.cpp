@@ -87,7 +87,7 @@ std::string header_of(uint64_t count) {
 
 Status write_model(uint64_t count, const char* path) {
   surfcast::Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return surfcast::fail(std::move(file.error()));
+  if (!file) return surfcast::fail(file);
   const std::string header = header_of(count);
   if (Status status = file->append(std::as_bytes(std::span(header))); !status) return status;
   const double size = std::log(100 / std::sqrt(static_cast<double>(count)));

@@ -82,7 +82,7 @@ std::vector<std::byte> make_header(uint64_t count) {
 
 Status write_scan(const surfcast::bench::ScanPart& part, surfcast::bench::Landscape landscape, const char* path) {
   surfcast::Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return surfcast::fail(file.error());
+  if (!file) return surfcast::fail(file);
   if (Status status = file->append(make_header(part.size())); !status) return status;
   std::vector<std::byte> batch;
   for (uint64_t first = 0; first < part.size(); first += kBatch) {

@@ -112,11 +112,11 @@ std::string line_of(Totals& totals, const scan::ScanSchema& schema) {
 
 Result<std::string> digests_of(const char* path, const scan::Selection& selection) {
   const Result<scan::ScanStream> stream = scan::ScanStream::open(path, {}, {}, selection);
-  if (!stream) return fail(stream.error());
+  if (!stream) return fail(stream);
   Totals totals;
   for (size_t piece = 0; piece < stream->pieces(); ++piece) {
     const Result<scan::ScanPoints> points = stream->read(piece);
-    if (!points) return fail(points.error());
+    if (!points) return fail(points);
     totals.add(*points);
   }
   return line_of(totals, stream->schema());

@@ -55,14 +55,14 @@ Status visit(const SoakPlan& plan, std::mt19937& random) {
   if (random() % 4 != 0) {
     const Result<client::BenchRecord> record =
         client::run_bench_client(view, {}, static_cast<double>(random() % 100) / 100);
-    return record ? Status() : fail(record.error());
+    return record ? Status() : fail(record);
   }
   Result<client::ServerConnection> connection = client::ServerConnection::open(server, {});
-  if (!connection) return fail(connection.error());
+  if (!connection) return fail(connection);
   wire::Request request;
   *request.mutable_draw_picture() = view.picture;
   const Result<uint64_t> sent = connection->send(std::move(request));
-  return sent ? Status() : fail(sent.error());
+  return sent ? Status() : fail(sent);
 }
 
 double mean_of(const std::vector<Sample>& samples, double from, double to) {

@@ -26,7 +26,7 @@ struct GeneratedCube {
 template <typename Sample>
 Status write_cube(const GeneratedCube<Sample>& cube, uint64_t side, const char* path) {
   Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const std::string header = cube.header(side);
   Status status = file->append(std::as_bytes(std::span(header)));
   std::vector<Sample> plane(side * side);

@@ -36,7 +36,7 @@ struct BenchResults {
     if (record) {
       records.push_back(std::move(*record));
     } else if (status) {
-      status = fail(record.error());
+      status = fail(record);
     }
   }
 };
@@ -57,7 +57,7 @@ Result<std::vector<BenchRecord>> run_clients(const BenchCommand& command, const 
           [&, i] { results.add(run_bench_client(plan, config, static_cast<double>(i) / command.clients)); });
     }
   }
-  if (!results.status) return fail(results.status.error());
+  if (!results.status) return fail(results.status);
   return std::move(results.records);
 }
 
@@ -66,12 +66,12 @@ Status bench(const BenchCommand& command, int interrupt) {
   if (!url) throw CLI::ValidationError(url.error().message);
   if (Status status = command.flags.check_view_flags(); !status) throw CLI::ValidationError(status.error().message);
   Result<wire::DrawPicture> picture = command.flags.view_request(url->model);
-  if (!picture) return fail(picture.error());
+  if (!picture) return fail(picture);
   BenchPlan plan = command.plan;
   plan.server = url->server;
   plan.picture = std::move(*picture);
   const Result<std::vector<BenchRecord>> records = run_clients(command, plan, interrupt);
-  if (!records) return fail(records.error());
+  if (!records) return fail(records);
   const BenchReport report = make_report(*records);
   std::cout << to_text(report) << std::flush;
   if (command.json.empty()) return {};

@@ -87,7 +87,7 @@ Pose BenchClient::pose_at(Clock::time_point time) const {
 /// Waits for the first frame, which states the initial camera.
 Status BenchClient::begin() {
   const Result<std::optional<View::Frame>> first = view_.next_until(after(Clock::now(), 60));
-  if (!first) return fail(first.error());
+  if (!first) return fail(first);
   if (!*first) return fail(ErrorKind::kUnavailable, "no frame came within a minute");
   start_ = to_pose((*first)->frame.picture().camera());
   end_ = after(Clock::now(), plan_.seconds);
@@ -99,7 +99,7 @@ Status BenchClient::send_update(double path_seconds, bool moving) {
   *picture.mutable_camera() = to_camera(pose_on_path(start_, path_seconds));
   const Clock::time_point now = Clock::now();
   const Result<uint64_t> update = view_.show(picture, moving);
-  if (!update) return fail(update.error());
+  if (!update) return fail(update);
   last_update_ = *update;
   sent_[*update] = now;
   if (moving) ++record_.updates;
@@ -108,15 +108,15 @@ Status BenchClient::send_update(double path_seconds, bool moving) {
 
 Result<std::optional<BenchFrame>> BenchClient::receive(Clock::time_point deadline) {
   if (!plan_.reads) {
-    if (Status status = pause_until(deadline, interrupt_); !status) return fail(status.error());
+    if (Status status = pause_until(deadline, interrupt_); !status) return fail(status);
     return std::nullopt;
   }
   const Result<std::optional<View::Frame>> received = view_.next_until(deadline);
-  if (!received) return fail(received.error());
+  if (!received) return fail(received);
   if (!*received) return std::nullopt;
   const wire::ViewFrame& message = (*received)->frame;
   const wire::Picture& picture = message.picture();
-  if (Status status = view_.painted(**received); !status) return fail(status.error());
+  if (Status status = view_.painted(**received); !status) return fail(status);
   if (const auto found = sent_.find(message.update()); found != sent_.end()) {
     shown_sent_ = found->second;
     sent_.erase(sent_.begin(), std::next(found));
@@ -148,7 +148,7 @@ Status BenchClient::move() {
       next_update = std::max(after(next_update, 1 / plan_.updates_per_second), Clock::now());
     }
     Result<std::optional<BenchFrame>> frame = receive(std::min(next_update, stop));
-    if (!frame) return fail(frame.error());
+    if (!frame) return fail(frame);
     if (*frame) record_.frames.push_back(std::move(**frame));
   }
   record_.moving_seconds += Seconds(Clock::now() - start).count();
@@ -163,7 +163,7 @@ Status BenchClient::rest() {
   Clock::time_point quiet_until = stop;
   while (Clock::now() < quiet_until) {
     Result<std::optional<BenchFrame>> frame = receive(quiet_until);
-    if (!frame) return fail(frame.error());
+    if (!frame) return fail(frame);
     if (!*frame) continue;
     if (converged) ++record_.late;
     if (!converged && (*frame)->converged) {
@@ -190,11 +190,11 @@ Status BenchClient::run() {
 
 Result<BenchRecord> run_bench_client(const BenchPlan& plan, const ClientConfig& config, double phase) {
   Result<ServerConnection> connection = ServerConnection::open(plan.server, config);
-  if (!connection) return fail(connection.error());
+  if (!connection) return fail(connection);
   Result<View> view = View::open(*connection, plan.picture, {plan.target_fps, plan.depth, plan.video});
-  if (!view) return fail(view.error());
+  if (!view) return fail(view);
   BenchClient client(plan, *view, config.interrupt, phase);
-  if (Status status = client.run(); !status) return fail(status.error());
+  if (Status status = client.run(); !status) return fail(status);
   BenchRecord record = client.take_record();
   record.bytes = connection->bytes_received();
   return record;

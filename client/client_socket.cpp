@@ -41,7 +41,7 @@ Status ClientSocket::connect(const protocol::Endpoint& server, Clock::time_point
 
 Status ClientSocket::encrypt(const std::string& host, const std::string& ca, Clock::time_point deadline) {
   const auto trust = tls::make_trust(ca);
-  if (!trust) return fail(trust.error());
+  if (!trust) return fail(trust);
   stream_.encrypt(**trust);
   tls::expect_host(stream_, host);
   stream_.async_handshake(boost::asio::ssl::stream_base::client, shaking_hands_.begin());

@@ -62,14 +62,14 @@ Result<wire::GetPoints> request_of(const ExportCommand& command, const std::stri
            {"coordinates", &command.coordinates},
        })) {
     if (text->empty()) continue;
-    if (Status status = protocol::set_points_field(points, name, *text); !status) return fail(status.error());
+    if (Status status = protocol::set_points_field(points, name, *text); !status) return fail(status);
   }
   const Result<wire::PointFormat> format = format_of(command);
-  if (!format) return fail(format.error());
+  if (!format) return fail(format);
   points.set_format(*format);
   points.set_normals(command.normals);
   points.set_only_count(command.count);
-  if (Status status = protocol::check_points(points); !status) return fail(status.error());
+  if (Status status = protocol::check_points(points); !status) return fail(status);
   return points;
 }
 
@@ -80,7 +80,7 @@ class Target {
     Target target;
     if (output == "-") return target;
     Result<AtomicFile> file = AtomicFile::create(output);
-    if (!file) return fail(std::move(file.error()));
+    if (!file) return fail(file);
     target.file_ = std::move(*file);
     return target;
   }
@@ -112,7 +112,7 @@ class Target {
 /// The next message with the points; an answer that is an error is one here.
 Result<wire::Points> next_message(ServerConnection& connection) {
   Result<wire::Answer> answer = connection.receive();
-  if (!answer) return fail(answer.error());
+  if (!answer) return fail(answer);
   if (answer->has_error()) {
     const Error error = protocol::from_wire(answer->error());
     return connection.failed(error.kind, error.message);
@@ -123,10 +123,10 @@ Result<wire::Points> next_message(ServerConnection& connection) {
 
 Status receive_file(ServerConnection& connection, const ExportCommand& command) {
   Result<Target> target = Target::open(command.output);
-  if (!target) return fail(std::move(target.error()));
+  if (!target) return fail(target);
   for (bool more = true; more;) {
     const Result<wire::Points> piece = next_message(connection);
-    if (!piece) return fail(piece.error());
+    if (!piece) return fail(piece);
     if (Status status = target->append(piece->data()); !status) return status;
     more = piece->more();
   }
@@ -135,7 +135,7 @@ Status receive_file(ServerConnection& connection, const ExportCommand& command) 
 
 Status receive(ServerConnection& connection, const ExportCommand& command) {
   const Result<wire::Points> first = next_message(connection);
-  if (!first) return fail(first.error());
+  if (!first) return fail(first);
   if (command.count) {
     std::cout << first->total() << '\n';
     return {};
@@ -152,10 +152,10 @@ Status export_points(const ExportCommand& command, int interrupt) {
   const Result<wire::GetPoints> points = request_of(command, url->model);
   if (!points) throw CLI::ValidationError(points.error().message);
   Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(*url, interrupt));
-  if (!connection) return fail(std::move(connection.error()));
+  if (!connection) return fail(connection);
   wire::Request request;
   *request.mutable_get_points() = *points;
-  if (const Result<uint64_t> id = connection->send(std::move(request)); !id) return fail(id.error());
+  if (const Result<uint64_t> id = connection->send(std::move(request)); !id) return fail(id);
   return receive(*connection, command);
 }
 

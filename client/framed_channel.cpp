@@ -52,14 +52,13 @@ Status FramedChannel::receive(std::span<std::byte> bytes, TimePoint deadline) {
 
 Result<MessageChannel::Bytes> FramedChannel::exchange_hellos(std::span<const std::byte> hello, TimePoint deadline) {
   outgoing_.assign(hello.begin(), hello.end());
-  if (Status status = send(deadline); !status) return fail(status.error());
+  if (Status status = send(deadline); !status) return fail(status);
   const auto header = std::span(incoming_).first<protocol::kHelloHeaderBytes>();
-  if (Status status = receive(header, deadline); !status) return fail(status.error());
+  if (Status status = receive(header, deadline); !status) return fail(status);
   const Result<size_t> text = protocol::hello_text_bytes(header);
-  if (!text) return fail(text.error());
+  if (!text) return fail(text);
   const std::span<std::byte> answer = std::span(incoming_).first(protocol::kHelloHeaderBytes + *text);
-  if (Status status = receive(answer.subspan(protocol::kHelloHeaderBytes), deadline); !status)
-    return fail(status.error());
+  if (Status status = receive(answer.subspan(protocol::kHelloHeaderBytes), deadline); !status) return fail(status);
   reading_.begun = false;
   return Bytes(answer.begin(), answer.end());
 }
@@ -76,10 +75,10 @@ Result<MessageChannel::Bytes> FramedChannel::read(TimePoint deadline) {
   if (socket_->interrupted()) return fail(ErrorKind::kCancelled, "interrupted");
   for (;;) {
     Result<std::optional<Bytes>> message = splitter_.next();
-    if (!message) return fail(message.error());
+    if (!message) return fail(message);
     if (*message) return std::move(**message);
     if (!reading_.begun) socket_->stream().async_read_some(asio::buffer(incoming_), reading_.begin());
-    if (Status status = socket_->finish(reading_, deadline); !status) return fail(status.error());
+    if (Status status = socket_->finish(reading_, deadline); !status) return fail(status);
     reading_.begun = false;
     splitter_.append(std::span(incoming_).first(reading_.bytes));
   }

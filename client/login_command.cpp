@@ -46,7 +46,7 @@ Status log_in(const LoginCommand& command, int interrupt) {
   config.token = read_secret();
   if (config.token.empty()) return fail(ErrorKind::kInvalidInput, "expected a token on standard input");
   const Result<ServerConnection> connection = ServerConnection::open(*server, config);
-  if (!connection) return fail(connection.error());
+  if (!connection) return fail(connection);
   return store_token(token_store(), *server, config.token);
 }
 

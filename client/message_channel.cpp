@@ -11,9 +11,9 @@ Result<std::unique_ptr<MessageChannel>> connect_channel(const protocol::Endpoint
                                                         MessageChannel::TimePoint deadline, int interrupt,
                                                         const std::string& ca, const std::string& model) {
   auto socket = std::make_unique<ClientSocket>();
-  if (Status status = socket->connect(server, deadline, interrupt); !status) return fail(status.error());
+  if (Status status = socket->connect(server, deadline, interrupt); !status) return fail(status);
   if (server.encrypted) {
-    if (Status status = socket->encrypt(server.host, ca, deadline); !status) return fail(status.error());
+    if (Status status = socket->encrypt(server.host, ca, deadline); !status) return fail(status);
   }
   if (!server.websocket) return make_framed_channel(std::move(socket));
   const std::string target = model.empty() ? "/ws" : "/ws?model=" + protocol::encode_escapes(model);

@@ -59,7 +59,7 @@ Status list_models(const ModelsCommand& command, int interrupt) {
   const Result<protocol::Endpoint> server = protocol::parse_endpoint(command.url);
   if (!server) throw CLI::ValidationError(server.error().message);
   const Result<wire::ModelList> list = ask_for_models(*server, command.limits.config(*server, interrupt));
-  if (!list) return fail(list.error());
+  if (!list) return fail(list);
   if (command.json) {
     std::cout << to_json(*list).dump(2) << '\n';
   } else {

@@ -28,7 +28,7 @@ Status ping(const PingCommand& command, int interrupt) {
   const Result<protocol::Endpoint> server = protocol::parse_endpoint(command.url);
   if (!server) throw CLI::ValidationError(server.error().message);
   Result<ServerConnection> connection = ServerConnection::open(*server, command.limits.config(*server, interrupt));
-  if (!connection) return fail(connection.error());
+  if (!connection) return fail(connection);
   std::cout << std::fixed << std::setprecision(3);
   std::vector<double> times;
   for (unsigned i = 0; i < command.count; ++i) {
@@ -36,7 +36,7 @@ Status ping(const PingCommand& command, int interrupt) {
     wire::Request request;
     request.mutable_ping();
     const Result<wire::Answer> answer = connection->ask(std::move(request));
-    if (!answer) return fail(answer.error());
+    if (!answer) return fail(answer);
     times.push_back(watch.milliseconds());
     std::cout << connection->server().program << ": " << times.back() << " ms\n";
   }

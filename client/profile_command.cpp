@@ -37,9 +37,9 @@ Result<wire::GetProfile> request_of(const ProfileCommand& command, const std::st
   for (const auto& [name, text] : {std::pair("line", &command.line), std::pair("width", &command.width),
                                    std::pair("max_points", &command.max_points)}) {
     if (text->empty()) continue;
-    if (Status status = protocol::set_profile_field(profile, name, *text); !status) return fail(status.error());
+    if (Status status = protocol::set_profile_field(profile, name, *text); !status) return fail(status);
   }
-  if (Status status = protocol::check_profile(profile); !status) return fail(status.error());
+  if (Status status = protocol::check_profile(profile); !status) return fail(status);
   return profile;
 }
 

@@ -19,9 +19,9 @@ Status render(const RenderCommand& command, int interrupt) {
   if (!url) throw CLI::ValidationError(url.error().message);
   if (Status status = command.flags.check(); !status) throw CLI::ValidationError(status.error().message);
   const Result<wire::DrawPicture> picture = command.flags.request(url->model);
-  if (!picture) return fail(picture.error());
+  if (!picture) return fail(picture);
   Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(*url, interrupt));
-  if (!connection) return fail(connection.error());
+  if (!connection) return fail(connection);
   return protocol::draw_and_save(command.flags, *picture, [&](const wire::DrawPicture& wanted) {
     wire::Request request;
     *request.mutable_draw_picture() = wanted;

@@ -21,7 +21,7 @@ Result<ServerConnection> ServerConnection::open(const protocol::Endpoint& server
   }
   ServerConnection connection(server, config, std::move(*channel));
   if (Status status = connection.exchange_hellos(deadline); !status) return connection.failed(status.error());
-  if (Status status = connection.authenticate(); !status) return fail(status.error());
+  if (Status status = connection.authenticate(); !status) return fail(status);
   return connection;
 }
 
@@ -31,7 +31,7 @@ Result<wire::Resumed> ServerConnection::resume(const std::string& session) {
   request.mutable_resume()->set_session(session);
   Result<wire::Answer> answer = ask(std::move(request));
   if (!answer && answer.error().kind == ErrorKind::kUnsupported) return wire::Resumed();
-  if (!answer) return fail(answer.error());
+  if (!answer) return fail(answer);
   for (const uint64_t view : answer->resumed().views()) last_id_ = std::max(last_id_, view);
   return std::move(*answer->mutable_resumed());
 }
@@ -43,7 +43,7 @@ Status ServerConnection::authenticate() {
   request.mutable_authenticate()->set_token(config_.token);
   const Result<wire::Answer> answer = ask(std::move(request));
   if (answer || answer.error().kind == ErrorKind::kUnsupported) return {};
-  return fail(answer.error());
+  return fail(answer);
 }
 
 tl::unexpected<Error> ServerConnection::failed(ErrorKind kind, const std::string& what) const {
@@ -70,7 +70,7 @@ Status ServerConnection::send_as(uint64_t id, wire::Request request) {
 }
 
 Result<uint64_t> ServerConnection::send(wire::Request request) {
-  if (Status status = send_as(++last_id_, std::move(request)); !status) return fail(status.error());
+  if (Status status = send_as(++last_id_, std::move(request)); !status) return fail(status);
   return last_id_;
 }
 
@@ -86,14 +86,14 @@ Result<std::optional<wire::Answer>> ServerConnection::receive_until(Clock::time_
 
 Result<wire::Answer> ServerConnection::receive() {
   Result<std::optional<wire::Answer>> answer = receive_until(Clock::now() + config_.answer);
-  if (!answer) return fail(answer.error());
+  if (!answer) return fail(answer);
   if (!*answer) return failed(ErrorKind::kUnavailable, "timed out");
   return std::move(**answer);
 }
 
 Result<wire::Answer> ServerConnection::ask(wire::Request request) {
   const Result<uint64_t> id = send(std::move(request));
-  if (!id) return fail(id.error());
+  if (!id) return fail(id);
   for (;;) {
     Result<wire::Answer> answer = receive();
     if (!answer && answer.error().kind == ErrorKind::kCancelled) {

@@ -13,7 +13,7 @@ Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& p
   request.mutable_open_view()->set_depth(wishes.depth);
   if (wishes.video) request.mutable_open_view()->add_video(wire::VIDEO_CODEC_VP9);
   const Result<uint64_t> id = connection.send(std::move(request));
-  if (!id) return fail(id.error());
+  if (!id) return fail(id);
   View view(connection, *id);
   view.bytes_before_ = connection.bytes_received();
   return view;
@@ -32,7 +32,7 @@ Result<uint64_t> View::show(const wire::DrawPicture& picture, bool moving) {
   update.set_update(++updates_);
   *update.mutable_picture() = picture;
   update.set_moving(moving);
-  if (Status status = connection_->send_as(id_, std::move(request)); !status) return fail(status.error());
+  if (Status status = connection_->send_as(id_, std::move(request)); !status) return fail(status);
   return updates_;
 }
 
@@ -56,7 +56,7 @@ Result<std::optional<View::Frame>> View::take(wire::ViewFrame piece) {
     incomplete_ = std::move(piece);
   }
   if (more) {
-    if (Status status = acknowledge(incomplete_->frame(), 0); !status) return fail(status.error());
+    if (Status status = acknowledge(incomplete_->frame(), 0); !status) return fail(status);
     return std::nullopt;
   }
   incomplete_->set_more(false);
@@ -68,7 +68,7 @@ Result<std::optional<View::Frame>> View::take(wire::ViewFrame piece) {
 Result<std::optional<View::Frame>> View::next_until(Clock::time_point deadline) {
   for (;;) {
     Result<std::optional<wire::Answer>> answer = connection_->receive_until(deadline);
-    if (!answer) return fail(answer.error());
+    if (!answer) return fail(answer);
     if (!*answer) return std::nullopt;
     wire::Answer& message = **answer;
     if (message.has_error() && (message.id() == id_ || message.id() == 0)) {
@@ -93,7 +93,7 @@ Status View::pick(const wire::DrawPicture& picture, uint32_t x, uint32_t y) {
   request.mutable_pick_surfel()->set_x(x);
   request.mutable_pick_surfel()->set_y(y);
   const Result<uint64_t> id = connection_->send(std::move(request));
-  if (!id) return fail(id.error());
+  if (!id) return fail(id);
   pick_ = *id;
   return {};
 }
@@ -102,7 +102,7 @@ Status View::close() {
   wire::Request request;
   request.mutable_close_view()->set_view(id_);
   const Result<wire::Answer> answer = connection_->ask(std::move(request));
-  if (!answer) return fail(answer.error());
+  if (!answer) return fail(answer);
   return {};
 }
 

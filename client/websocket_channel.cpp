@@ -92,8 +92,8 @@ Status WebSocketChannel::upgrade(TimePoint deadline) {
 }
 
 Result<MessageChannel::Bytes> WebSocketChannel::exchange_hellos(std::span<const std::byte> hello, TimePoint deadline) {
-  if (Status status = upgrade(deadline); !status) return fail(status.error());
-  if (Status status = write(hello, deadline); !status) return fail(status.error());
+  if (Status status = upgrade(deadline); !status) return fail(status);
+  if (Status status = write(hello, deadline); !status) return fail(status);
   return read(deadline);
 }
 

@@ -135,7 +135,7 @@ Result<wire::Camera> camera_of_view(const json& view) {
       return invalid(std::string(field) + ": " + status.error().message);
     }
   }
-  if (Status status = check_camera(picture.camera()); !status) return fail(status.error());
+  if (Status status = check_camera(picture.camera()); !status) return fail(status);
   return picture.camera();
 }
 
@@ -174,19 +174,19 @@ Result<CameraPath> CameraPath::parse(std::string_view text, double seconds_per_v
   for (const json& entry : document[views ? "views" : "keyframes"]) {
     Result<Keyframe> keyframe =
         views ? keyframe_of_view(entry, keyframes.size(), seconds_per_view) : read_keyframe(entry, keyframes.size());
-    if (!keyframe) return fail(keyframe.error());
+    if (!keyframe) return fail(keyframe);
     keyframes.push_back(std::move(*keyframe));
   }
-  if (Status status = check_order(keyframes); !status) return fail(status.error());
+  if (Status status = check_order(keyframes); !status) return fail(status);
   return CameraPath(std::move(keyframes));
 }
 
 Result<CameraPath> CameraPath::read(const std::string& file, double seconds_per_view) {
   const Result<MappedFile> mapped = MappedFile::open(file);
-  if (!mapped) return fail(mapped.error());
+  if (!mapped) return fail(mapped);
   Result<CameraPath> path =
       parse({reinterpret_cast<const char*>(mapped->bytes().data()), mapped->bytes().size()}, seconds_per_view);
-  if (!path) return fail(path.error().kind, file + ": " + path.error().message);
+  if (!path) return fail_about(file, path);
   return path;
 }
 

@@ -53,7 +53,7 @@ Result<ModelUrl> parse_model_url(std::string_view text) {
     return fail(ErrorKind::kInvalidInput, "'" + std::string(text) + "': expected HOST:PORT/MODEL");
   }
   const Result<Endpoint> server = parse_endpoint(text.substr(0, slash));
-  if (!server) return fail(server.error());
+  if (!server) return fail(server);
   return ModelUrl{*server, std::string(text.substr(slash + 1))};
 }
 

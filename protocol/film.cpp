@@ -16,8 +16,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/ascii_text.h"
 #include "base/child_process.h"
-#include "base/letter_case.h"
 
 namespace surfcast::protocol {
 namespace {
@@ -108,7 +108,7 @@ Result<FilmWriter> FilmWriter::create(const fs::path& target, double frames_per_
   fs::path temporary = target;
   temporary += ".tmp" + std::to_string(::getpid());
   const Result<pid_t> encoder = start(encoder_arguments(target, temporary, frames_per_second), its, messages);
-  if (!encoder) return fail(encoder.error());
+  if (!encoder) return fail(encoder);
   return FilmWriter(target, std::move(temporary), *encoder, std::move(ours), std::move(messages));
 }
 

@@ -58,7 +58,7 @@ Result<std::optional<std::vector<std::byte>>> FrameSplitter::next() {
   const std::span<const std::byte> rest = std::span(buffer_).subspan(start_);
   if (rest.size() < kFrameHeaderBytes) return std::nullopt;
   const Result<size_t> length = frame_length(rest.first<kFrameHeaderBytes>(), limit_);
-  if (!length) return fail(length.error());
+  if (!length) return fail(length);
   if (rest.size() - kFrameHeaderBytes < *length) return std::nullopt;
   const std::span<const std::byte> content = rest.subspan(kFrameHeaderBytes, *length);
   start_ += kFrameHeaderBytes + *length;

@@ -73,7 +73,7 @@ Result<size_t> hello_text_bytes(std::span<const std::byte, kHelloHeaderBytes> he
 Result<Hello> decode_hello(std::span<const std::byte> bytes) {
   if (bytes.size() < kHelloHeaderBytes) return fail(ErrorKind::kInvalidInput, "the peer's hello is cut short");
   const Result<size_t> text = hello_text_bytes(bytes.first<kHelloHeaderBytes>());
-  if (!text) return fail(text.error());
+  if (!text) return fail(text);
   if (bytes.size() != kHelloHeaderBytes + *text) {
     return fail(ErrorKind::kInvalidInput, "the peer's hello does not have the length it announces");
   }

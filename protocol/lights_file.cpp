@@ -73,10 +73,10 @@ Status parse_lights_json(std::string_view text, wire::Lighting& lighting) {
 
 Status read_lights_file(const std::string& path, wire::Lighting& lighting) {
   const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size());
   if (Status status = parse_lights_json(text, lighting); !status) {
-    return fail(status.error().kind, path + ": " + status.error().message);
+    return fail_about(path, status);
   }
   return {};
 }

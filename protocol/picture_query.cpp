@@ -13,7 +13,7 @@ Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::strin
     return set_picture_field(picture, name, text);
   });
   if (status) status = check_picture(picture);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return picture;
 }
 
@@ -28,7 +28,7 @@ Result<wire::PickSurfel> parse_pick_query(std::string_view model, std::string_vi
   });
   if (status && !pixel_given) status = fail(ErrorKind::kInvalidInput, "pixel: is missing");
   if (status) status = check_picture(pick.picture());
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return pick;
 }
 

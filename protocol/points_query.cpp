@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "protocol/parse.h"
 #include "protocol/url_query.h"
 #include "protocol/validate.h"
@@ -197,7 +197,7 @@ Result<wire::GetPoints> parse_points_query(std::string_view model, std::string_v
     return set_points_field(points, name, text);
   });
   if (status) status = check_points(points);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return points;
 }
 

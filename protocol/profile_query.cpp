@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "protocol/parse.h"
 #include "protocol/url_query.h"
 #include "protocol/validate.h"
@@ -107,7 +107,7 @@ Result<ProfileQuery> parse_profile_query(std::string_view model, std::string_vie
     return {};
   });
   if (status) status = check_profile(result.profile);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return result;
 }
 

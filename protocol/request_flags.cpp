@@ -7,8 +7,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "base/ascii_text.h"
 #include "base/contract.h"
-#include "base/letter_case.h"
 #include "base/mapped_file.h"
 #include "protocol/camera_path.h"
 #include "protocol/film.h"
@@ -79,10 +79,10 @@ bool read_camera_field(const std::string& key, const json& value, wire::Camera& 
 
 Status read_camera_file(const std::string& path, wire::Camera& camera) {
   const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size());
   if (Status status = parse_camera_json(text, camera); !status) {
-    return fail(status.error().kind, path + ": " + status.error().message);
+    return fail_about(path, status);
   }
   return {};
 }
@@ -180,14 +180,14 @@ Status RequestFlags::check() const {
     return fail(ErrorKind::kInvalidInput, "--format is of pictures, and " + output_ + " is a film");
   }
   const Result<wire::FileFormat> chosen = format();
-  if (!chosen) return fail(chosen.error());
+  if (!chosen) return fail(chosen);
   if (!values_.at("channels").empty() && *chosen != wire::FILE_FORMAT_EXR) {
     return fail(ErrorKind::kInvalidInput, "--channels needs a picture in EXR format");
   }
   if (!path_.empty()) {
     if (!stats_.empty()) return fail(ErrorKind::kInvalidInput, "--stats is of one picture, and --path draws many");
     const Result<std::string> name = is_film(output_) ? output_ : frame_name(output_, 0);
-    if (!name) return fail(name.error());
+    if (!name) return fail(name);
   }
   return check_view_flags();
 }
@@ -225,17 +225,17 @@ Result<wire::DrawPicture> RequestFlags::request(std::string_view model, std::opt
   picture.set_model(std::string(model));
   if (!camera_file_.empty()) {
     if (Status status = read_camera_file(camera_file_, *picture.mutable_camera()); !status) {
-      return fail(status.error());
+      return fail(status);
     }
   }
   for (const auto& [name, text] : values_) {
     if (text.empty() || is_replaced(name)) continue;
     const Status status =
         names_file(name, text) ? read_file(name, text, picture) : set_picture_field(picture, name, text);
-    if (!status) return fail(status.error());
+    if (!status) return fail(status);
   }
   if (format) picture.set_format(*format);
-  if (Status status = check_picture(picture); !status) return fail(status.error());
+  if (Status status = check_picture(picture); !status) return fail(status);
   return picture;
 }
 
@@ -255,10 +255,10 @@ void PickFlags::add_to(CLI::App& command) {
 
 Result<wire::PickSurfel> PickFlags::request(std::string_view model) const {
   Result<wire::DrawPicture> picture = view_flags_.view_request(model);
-  if (!picture) return fail(picture.error());
+  if (!picture) return fail(picture);
   wire::PickSurfel pick;
   *pick.mutable_picture() = std::move(*picture);
-  if (Status status = set_pixel(pick, pixel_); !status) return fail(status.error());
+  if (Status status = set_pixel(pick, pixel_); !status) return fail(status);
   return pick;
 }
 

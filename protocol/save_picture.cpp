@@ -35,14 +35,14 @@ using Draw = std::function<Result<wire::Picture>(const wire::DrawPicture&)>;
 Status draw_path(const RequestFlags& flags, const wire::DrawPicture& picture, const Draw& draw,
                  const std::function<Status(int, const wire::Picture&)>& take) {
   const Result<CameraPath> path = CameraPath::read(flags.path(), flags.seconds_per_view());
-  if (!path) return fail(path.error());
+  if (!path) return fail(path);
   const Result<int> frames = path->frames(flags.frames_per_second());
-  if (!frames) return fail(frames.error());
+  if (!frames) return fail(frames);
   for (int number = 0; number < *frames; ++number) {
     wire::DrawPicture frame = picture;
     *frame.mutable_camera() = path->camera_of(number, flags.frames_per_second());
     const Result<wire::Picture> drawn = draw(frame);
-    if (!drawn) return fail(drawn.error());
+    if (!drawn) return fail(drawn);
     if (Status taken = take(number, *drawn); !taken) return taken;
   }
   return {};
@@ -51,13 +51,13 @@ Status draw_path(const RequestFlags& flags, const wire::DrawPicture& picture, co
 Status draw_frames(const RequestFlags& flags, const wire::DrawPicture& picture, const Draw& draw) {
   return draw_path(flags, picture, draw, [&](int number, const wire::Picture& drawn) -> Status {
     const Result<std::string> name = frame_name(flags.output(), number);
-    return name ? save_picture(drawn, *name, {}) : fail(name.error());
+    return name ? save_picture(drawn, *name, {}) : fail(name);
   });
 }
 
 Status draw_film(const RequestFlags& flags, const wire::DrawPicture& picture, const Draw& draw) {
   Result<FilmWriter> film = FilmWriter::create(flags.output(), flags.frames_per_second());
-  if (!film) return fail(film.error());
+  if (!film) return fail(film);
   const auto add = [&](int /*number*/, const wire::Picture& drawn) { return film->append(drawn.data()); };
   if (Status drawn = draw_path(flags, picture, draw, add); !drawn) return drawn;
   return film->finish();
@@ -108,7 +108,7 @@ Status draw_and_save(const RequestFlags& flags, const wire::DrawPicture& picture
                      const std::function<Result<wire::Picture>(const wire::DrawPicture&)>& draw) {
   if (flags.path().empty()) {
     const Result<wire::Picture> drawn = draw(picture);
-    return drawn ? save_picture(*drawn, flags.output(), flags.stats()) : fail(drawn.error());
+    return drawn ? save_picture(*drawn, flags.output(), flags.stats()) : fail(drawn);
   }
   return is_film(flags.output()) ? draw_film(flags, picture, draw) : draw_frames(flags, picture, draw);
 }

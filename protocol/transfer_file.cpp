@@ -103,10 +103,10 @@ Status parse_transfer_json(std::string_view text, wire::TransferFunction& transf
 
 Status read_transfer_file(const std::string& path, wire::TransferFunction& transfer) {
   const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size());
   if (Status status = parse_transfer_json(text, transfer); !status) {
-    return fail(status.error().kind, path + ": " + status.error().message);
+    return fail_about(path, status);
   }
   return {};
 }

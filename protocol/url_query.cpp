@@ -70,8 +70,8 @@ Status for_each_parameter(std::string_view query, const SetParameter& set) {
     const size_t equals = part.find('=');
     const Result<std::string> name = decode_query(part.substr(0, equals));
     const Result<std::string> text = decode_query(equals == std::string_view::npos ? "" : part.substr(equals + 1));
-    if (!name) return fail(name.error());
-    if (!text) return fail(text.error());
+    if (!name) return fail(name);
+    if (!text) return fail(text);
     if (!seen.insert(*name).second) return fail(ErrorKind::kInvalidInput, *name + ": given twice");
     if (Status status = set(*name, *text); !status) return fail(ErrorKind::kInvalidInput, status.error().message);
   }

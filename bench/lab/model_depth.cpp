@@ -61,7 +61,7 @@ Result<DrawnSurfels> drawn_surfels(const model::ModelFile& model) {
   for (uint32_t block = 0; block < model.blocks().size(); ++block) {
     if (model.tree().children(block).count > 0) continue;
     const Result<model::DecodedBlock> decoded = model.decode(block, model::WantedScalars::kNone);
-    if (!decoded) return fail(decoded.error());
+    if (!decoded) return fail(decoded);
     append(*decoded, surfels);
   }
   return surfels;

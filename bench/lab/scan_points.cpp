@@ -67,12 +67,12 @@ void write_value(std::ofstream& file, const T& value) {
 
 Result<LabPoints> read_points(const std::filesystem::path& path) {
   const Result<scan::ScanStream> stream = scan::ScanStream::open(path);
-  if (!stream) return fail(stream.error());
+  if (!stream) return fail(stream);
   LabPoints points;
   points.z_up = stream->schema().z_up;
   for (size_t piece = 0; piece < stream->pieces(); ++piece) {
     const Result<scan::ScanPoints> read = stream->read(piece);
-    if (!read) return fail(read.error());
+    if (!read) return fail(read);
     append(*read, points);
   }
   return kept_points(points, distinct(points.positions));

@@ -72,7 +72,7 @@ std::array<float, kLastCode + 1> values_of_codes(double first, double last) {
 }  // namespace
 
 Result<DepthPlane> decode_depth(const wire::DepthPlane& plane, int width, int height) {
-  if (Status status = check(plane, width, height); !status) return fail(status.error());
+  if (Status status = check(plane, width, height); !status) return fail(status);
   DepthPlane depth{cells(width, plane.cell()),
                    cells(height, plane.cell()),
                    static_cast<int>(plane.cell()),
@@ -80,7 +80,7 @@ Result<DepthPlane> decode_depth(const wire::DepthPlane& plane, int width, int he
                    plane.seen_through()};
   Result<std::vector<uint8_t>> codes =
       inflated(plane.codes(), static_cast<size_t>(depth.width) * static_cast<size_t>(depth.height));
-  if (!codes) return fail(codes.error());
+  if (!codes) return fail(codes);
   predict(*codes, static_cast<size_t>(depth.width));
   const auto values = values_of_codes(plane.first(), plane.last());
   depth.inverse.resize(codes->size());

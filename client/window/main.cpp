@@ -22,10 +22,10 @@ const command_line::ProgramText& program_text() {
 
 Result<ViewRequest> view_request_of(const std::string& address, const protocol::RequestFlags& flags) {
   const Result<protocol::ModelUrl> url = protocol::parse_model_url(address);
-  if (!url) return fail(url.error());
-  if (Status status = flags.check_view_flags(); !status) return fail(status.error());
+  if (!url) return fail(url);
+  if (Status status = flags.check_view_flags(); !status) return fail(status);
   Result<wire::DrawPicture> picture = flags.view_request(url->model);
-  if (!picture) return fail(picture.error());
+  if (!picture) return fail(picture);
   if (!picture->has_resolution()) {
     picture->mutable_resolution()->set_width(protocol::kDefaultWidth);
     picture->mutable_resolution()->set_height(protocol::kDefaultHeight);

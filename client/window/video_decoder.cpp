@@ -76,7 +76,7 @@ Status VideoDecoder::begin() {
 Result<PixelImage> VideoDecoder::decode(std::string_view packet) {
   if (!fits(packet)) return undecodable("its size");
   if (!codec_) {
-    if (Status status = begin(); !status) return fail(status.error());
+    if (Status status = begin(); !status) return fail(status);
   }
   const auto* data = reinterpret_cast<const uint8_t*>(packet.data());
   vpx_codec_iter_t iterator = nullptr;

@@ -107,7 +107,7 @@ wire::DrawPicture ViewLoop::picture() const {
 
 Status ViewLoop::poll_input() {
   Result<client::ServerConnection> connection = client::ServerConnection::open(request_.url.server, config_);
-  if (!connection) return fail(connection.error());
+  if (!connection) return fail(connection);
   if (Status status = open_view(*connection); !status) return status;
   while (open_) {
     if (Status status = step(*view_); !status) return status;
@@ -129,7 +129,7 @@ Status ViewLoop::begin_view(client::ServerConnection& connection) {
   video_ = VideoDecoder();
   const client::ViewWishes wishes{request_.target_fps, /*depth=*/true, video_wanted_};
   Result<client::View> view = client::View::open(connection, picture(), wishes);
-  if (!view) return fail(view.error());
+  if (!view) return fail(view);
   view_.emplace(std::move(*view));
   return {};
 }
@@ -137,7 +137,7 @@ Status ViewLoop::begin_view(client::ServerConnection& connection) {
 /// Goes on with the view of the former connection if the server has kept it.
 Status ViewLoop::open_view(client::ServerConnection& connection) {
   Result<wire::Resumed> resumed = connection.resume(session_);
-  if (!resumed) return fail(resumed.error());
+  if (!resumed) return fail(resumed);
   session_ = resumed->session();
   const auto& views = resumed->views();
   if (view_ && std::find(views.begin(), views.end(), view_->id()) != views.end()) {
@@ -147,7 +147,7 @@ Status ViewLoop::open_view(client::ServerConnection& connection) {
   wire::Request describe;
   describe.mutable_describe_model()->set_model(request_.url.model);
   const Result<wire::Answer> answer = connection.ask(std::move(describe));
-  if (!answer) return fail(answer.error());
+  if (!answer) return fail(answer);
   subject_ = subject_of(answer->model_description());
   sent_width_ = window_.width();
   sent_height_ = window_.height();
@@ -196,12 +196,12 @@ Status ViewLoop::send_update(client::View& view, bool moving) {
   sent_moving_ = moving;
   last_update_ = Clock::now();
   const Result<uint64_t> update = view.show(wanted, moving);
-  return update ? Status() : fail(update.error());
+  return update ? Status() : fail(update);
 }
 
 Status ViewLoop::receive(client::View& view) {
   const Result<std::optional<client::View::Frame>> frame = view.next_until(Clock::now() + kTick);
-  if (!frame) return fail(frame.error());
+  if (!frame) return fail(frame);
   return *frame ? take(view, **frame) : Status();
 }
 
@@ -224,7 +224,7 @@ Status ViewLoop::take(client::View& view, const client::View::Frame& frame) {
     undecodable_ = true;
     return view.painted(frame);
   }
-  if (!image) return fail(image.error());
+  if (!image) return fail(image);
   const int width = image->width;
   const int height = image->height;
   if (!controls_) {
@@ -265,7 +265,7 @@ Status view_in_window(const ViewRequest& request, const client::ClientConfig& co
   const wire::Resolution& size = request.picture.resolution();
   Result<Window> window =
       Window::open(request.url.model, static_cast<int>(size.width()), static_cast<int>(size.height()));
-  if (!window) return fail(window.error());
+  if (!window) return fail(window);
   ViewLoop loop(request, config, *window);
   for (;;) {
     Status status = loop.poll_input();

@@ -30,13 +30,13 @@ Status write_files(const std::filesystem::path& folder) {
 
 Status write_document(const std::string& path) {
   const Result<std::string> text = with_options(read(path));
-  return text ? write(path, *text) : fail(text.error());
+  return text ? write(path, *text) : fail(text);
 }
 
 Status compare_document(const std::string& path) {
   const std::string document = read(path);
   const Result<std::string> text = with_options(document);
-  if (!text) return fail(text.error());
+  if (!text) return fail(text);
   if (*text == document) return {};
   return fail(ErrorKind::kInvalidInput, path +
                                             ": the table of options is not that of protocol/picture_fields.cpp; "

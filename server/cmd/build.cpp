@@ -360,7 +360,7 @@ Status build(BuildCommand& command) {
     const auto note = [&progress](const builder::BuildStep& step) { progress.note(step); };
     report = command.into.empty() ? make_model(command, surfaces, note) : append_into(command, note);
   }
-  if (!report) return fail(std::move(report.error()));
+  if (!report) return fail(report);
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   std::cout << surface_lines(surfaces.found()) << mesh_lines(report->meshes) << field_lines(report->fields)
             << system_lines(report->transformed, report->georeference) << radii_lines(*report)

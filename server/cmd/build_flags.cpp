@@ -74,7 +74,7 @@ Status open_folders(std::vector<std::filesystem::path>& inputs) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& input : inputs) {
     Result<std::vector<std::filesystem::path>> found = builder::inputs_at(input);
-    if (!found) return fail(std::move(found.error()));
+    if (!found) return fail(found);
     files.insert(files.end(), found->begin(), found->end());
   }
   inputs = std::move(files);

@@ -53,7 +53,7 @@ void warn_of(const std::vector<std::string>& notes) {
 Status plan(StepCommand& command) {
   if (Status status = open_folders(command.inputs); !status) return status;
   const Result<uint64_t> memory = builder::memory_budget(builder::parse_memory_size(command.model.memory));
-  if (!memory) return fail(memory.error());
+  if (!memory) return fail(memory);
   builder::PlanRequest& request = command.request;
   request.program = SURFCAST_VERSION;
   request.precision = command.model.precision;
@@ -62,7 +62,7 @@ Status plan(StepCommand& command) {
   const auto planned = run_step(command, [&](const builder::BuildProgress& progress) {
     return builder::plan_build(command.inputs, command.work, request, progress);
   });
-  if (!planned) return fail(planned.error());
+  if (!planned) return fail(planned);
   warn_of(planned->notes);
   std::cout << system_lines(planned->transformed, planned->georeference)
             << fmt::format("{}{} points of {} inputs, {} parts of {} points at most\n",
@@ -75,7 +75,7 @@ Status make_part(const StepCommand& command) {
   const auto made = run_step(command, [&](const builder::BuildProgress& progress) {
     return builder::build_part(command.place(), command.part, progress);
   });
-  if (!made) return fail(made.error());
+  if (!made) return fail(made);
   std::cout << (made->done_before
                     ? fmt::format("part {} was made before\n", command.part)
                     : fmt::format("part {}: {} surfels, and {} around them\n", command.part, made->own, made->halo));
@@ -85,7 +85,7 @@ Status make_part(const StepCommand& command) {
 Status decide_signs(const StepCommand& command) {
   const auto signs = run_step(
       command, [&](const builder::BuildProgress& progress) { return builder::build_signs(command.place(), progress); });
-  if (!signs) return fail(signs.error());
+  if (!signs) return fail(signs);
   warn_of(signs->notes);
   for (const auto& [input, decision] : signs->radii) {
     if (decision.outcome == estimation::RadiusOutcome::kEstimated) continue;
@@ -101,7 +101,7 @@ Status make_blocks(const StepCommand& command) {
   const auto made = run_step(command, [&](const builder::BuildProgress& progress) {
     return builder::build_part_blocks(command.place(), command.part, progress);
   });
-  if (!made) return fail(made.error());
+  if (!made) return fail(made);
   std::cout << (made->done_before
                     ? fmt::format("blocks of part {} were made before\n", command.part)
                     : fmt::format("part {}: {} surfels in {} blocks\n", command.part, made->surfels, made->blocks));
@@ -113,7 +113,7 @@ Status merge(const StepCommand& command) {
   const auto merged = run_step(command, [&](const builder::BuildProgress& progress) {
     return builder::merge_parts(command.place(), command.output, progress);
   });
-  if (!merged) return fail(merged.error());
+  if (!merged) return fail(merged);
   std::cout << (merged->done_before
                     ? fmt::format("{} was merged before\n", command.output.string())
                     : fmt::format("{} points read, {} surfels, {} blocks, {} bytes, {:.2f} s\n", merged->points_read,

@@ -55,7 +55,7 @@ Result<builder::BuildReport> build(const ColorizeCommand& command, const std::fi
 
 Status build_painted(const ColorizeCommand& command, const PaintScan& paint, const colorize::PaintReport& painted) {
   const Result<builder::BuildReport> report = build(command, command.output, paint);
-  if (!report) return fail(report.error());
+  if (!report) return fail(report);
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   std::cout << fmt::format(
       "{} points have the pictures' colours, {} are hidden from them, {} outside\n{} surfels, {} bytes\n",
@@ -65,7 +65,7 @@ Status build_painted(const ColorizeCommand& command, const PaintScan& paint, con
 
 Status colorize_from_above(const ColorizeCommand& command, const scan::DecodingLimit& limit) {
   const Result<colorize::GeoPhoto> photo = colorize::read_geo_photo(command.photo, limit);
-  if (!photo) return fail(photo.error());
+  if (!photo) return fail(photo);
   colorize::PaintReport painted;
   const PaintScan paint = [&](scan::ScanStream scan, const std::filesystem::path& input,
                               std::optional<uint64_t> sample) {
@@ -86,19 +86,19 @@ double tolerance_of(const model::ModelFile& model) {
 /// Builds the model twice: to see what hides what, and with the colours.
 Status colorize_from_cameras(const ColorizeCommand& command, const scan::DecodingLimit& limit) {
   const Result<MappedFile> file = MappedFile::open(command.cameras);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const auto* text = reinterpret_cast<const char*>(file->bytes().data());
   const auto cameras = colorize::parse_cameras({text, file->bytes().size()}, command.cameras);
-  if (!cameras) return fail(cameras.error());
+  if (!cameras) return fail(cameras);
   const std::filesystem::path folder = command.output.parent_path();
   const Result<ScratchFolder> scratch = ScratchFolder::create(folder.empty() ? "." : folder, ".colorize-");
-  if (!scratch) return fail(scratch.error());
+  if (!scratch) return fail(scratch);
   const std::filesystem::path plain = scratch->path() / "plain.surf";
-  if (const Result<builder::BuildReport> built = build(command, plain, {}); !built) return fail(built.error());
+  if (const Result<builder::BuildReport> built = build(command, plain, {}); !built) return fail(built);
   const Result<model::ModelFile> model = model::ModelFile::open(plain);
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   const Result<std::vector<colorize::Photo>> photos = colorize::take_photos(*cameras, *model, limit);
-  if (!photos) return fail(photos.error());
+  if (!photos) return fail(photos);
   colorize::PaintReport painted;
   const PaintScan paint = [&](scan::ScanStream scan, const std::filesystem::path& input,
                               std::optional<uint64_t> sample) {
@@ -110,7 +110,7 @@ Status colorize_from_cameras(const ColorizeCommand& command, const scan::Decodin
 
 Status colorize(const ColorizeCommand& command) {
   const Result<uint64_t> budget = builder::memory_budget(builder::parse_memory_size(command.memory));
-  if (!budget) return fail(budget.error());
+  if (!budget) return fail(budget);
   const scan::DecodingLimit limit{*budget / 4};
   return command.cameras.empty() ? colorize_from_above(command, limit) : colorize_from_cameras(command, limit);
 }

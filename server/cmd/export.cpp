@@ -76,12 +76,12 @@ Result<exporter::ExportReport> export_several(const ExportCommand& command,
                                               std::span<const std::filesystem::path> sources,
                                               const object_store::ObjectStore& store, const InPlaceOpener& in_place) {
   Result<std::vector<model::Member>> members = open_members(sources, store, in_place);
-  if (!members) return fail(std::move(members.error()));
+  if (!members) return fail(members);
   std::vector<std::string> notes;
   std::vector<model::Member> kept = exportable(std::move(*members), notes);
   if (kept.empty()) return fail(ErrorKind::kUnsupported, "none of the models has points that can be written");
   Result<model::ModelFile> joined = model::ModelFile::join(std::move(kept));
-  if (!joined) return fail(std::move(joined.error()));
+  if (!joined) return fail(joined);
   return exporter::export_model(std::make_shared<const model::ModelFile>(std::move(*joined)), command.output,
                                 command.options)
       .map([&](exporter::ExportReport report) {
@@ -100,12 +100,12 @@ Result<exporter::ExportReport> export_sources(const ExportCommand& command,
 
 Status export_points(ExportCommand& command) {
   const Result<uint64_t> budget = builder::memory_budget(builder::parse_memory_size(command.memory));
-  if (!budget) return fail(budget.error());
+  if (!budget) return fail(budget);
   command.options.limit = scan::DecodingLimit{*budget / 4};
   command.options.octree.memory = *budget / 2;
   const std::vector<std::filesystem::path> sources = members_of_paths(command.sources);
   const auto report = export_sources(command, sources);
-  if (!report) return fail(report.error());
+  if (!report) return fail(report);
   const std::string name = sources.size() == 1 ? sources.front().string() : command.output.string();
   for (const std::string& note : report->notes) spdlog::warn("{}: {}", name, note);
   std::cout << fmt::format("{} points, {} bytes\n", report->points, report->bytes);

@@ -29,7 +29,7 @@ Result<service::NamedModel> find_stored(const std::string& url, const std::strin
                 shown + ": neither a model (.surf) nor a folder of models (with a / at its end)");
   }
   Result<model::ModelFile> model = store.open(url, shown);
-  if (!model) return fail(std::move(model.error()));
+  if (!model) return fail(model);
   return service::NamedModel{
       object_store::object_name(url), url, {}, std::make_shared<const model::ModelFile>(std::move(*model))};
 }
@@ -47,7 +47,7 @@ fs::path with_name(const fs::path& path) {
 Result<service::NamedModel> find_in_place(const fs::path& path, const std::string& shown,
                                           const InPlaceOpener& in_place) {
   Result<model::ModelFile> model = in_place.open(path, shown);
-  if (!model) return fail(std::move(model.error()));
+  if (!model) return fail(model);
   const bool stored = object_store::is_object_url(path.string());
   service::NamedModel named;
   // A folder of a store is called like one of this machine.
@@ -78,10 +78,10 @@ bool is_scan_folder(const fs::path& path) {
 Result<service::NamedModel> find_model(const fs::path& path, const ScanCacheConfig& cache) {
   if (path.extension() != ".surf") {
     Result<CachedModel> built = model_of_scan(path, cache);
-    if (!built) return fail(built.error());
+    if (!built) return fail(built);
     return service::NamedModel{service::model_name(with_name(path)), std::move(built->path), std::move(built->in_use)};
   }
-  if (const Result<model::ModelFile> model = model::ModelFile::open(path); !model) return fail(model.error());
+  if (const Result<model::ModelFile> model = model::ModelFile::open(path); !model) return fail(model);
   return service::NamedModel{service::model_name(path), path};
 }
 
@@ -129,7 +129,7 @@ Status sort_url(const std::string& url, const object_store::ObjectStore& store, 
   const std::string name = object_store::object_name(url);
   Result<service::NamedModel> model =
       in_place.opens(url) ? find_in_place(url, name, in_place) : find_stored(url, name, store);
-  if (!model) return fail(model.error().kind, object_store::shown_url(url) + ": " + model.error().message);
+  if (!model) return fail_about(object_store::shown_url(url), model);
   sorted.models.push_back(std::move(*model));
   return {};
 }
@@ -163,12 +163,12 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_stor
   NamedPaths sorted;
   for (const fs::path& path : paths) {
     if (const std::string url = path.string(); object_store::is_object_url(url)) {
-      if (Status status = sort_url(url, store, in_place, sorted); !status) return fail(std::move(status.error()));
+      if (Status status = sort_url(url, store, in_place, sorted); !status) return fail(status);
       continue;
     }
     if (in_place.opens(path)) {
       Result<service::NamedModel> model = find_in_place(path, path.string(), in_place);
-      if (!model) return fail(std::move(model.error()));
+      if (!model) return fail(model);
       sorted.models.push_back(std::move(*model));
       continue;
     }
@@ -177,15 +177,15 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_stor
       sorted.folders.push_back(path);
       continue;
     }
-    if (Status status = check_file(path); !status) return fail(std::move(status.error()));
+    if (Status status = check_file(path); !status) return fail(status);
     if (path.extension() == ".surf") {
       sorted.models.push_back({service::model_name(path), path});
     } else {
       sorted.scans.push_back(with_name(path));
     }
   }
-  if (Status status = check_names(sorted); !status) return fail(std::move(status.error()));
-  if (Status status = check_any_scan(sorted); !status) return fail(std::move(status.error()));
+  if (Status status = check_names(sorted); !status) return fail(status);
+  if (Status status = check_any_scan(sorted); !status) return fail(status);
   return sorted;
 }
 
@@ -194,7 +194,7 @@ Result<FoundModel> find_shown_model(std::span<const fs::path> paths, const ScanC
   std::vector<service::NamedModel> files;
   for (const fs::path& path : members_of_paths(paths)) {
     Result<service::NamedModel> model = find_one(path, cache, store, in_place);
-    if (!model) return fail(std::move(model.error()));
+    if (!model) return fail(model);
     files.push_back(std::move(*model));
   }
   if (files.size() > 1) name_apart(files);

@@ -63,7 +63,7 @@ Result<std::vector<int>> devices_of(const GpuSelection& gpus) {
   constexpr int kDefault = -1;
   if (!gpus.all) return gpus.numbers.empty() ? std::vector{kDefault} : gpus.numbers;
   Result<std::vector<std::string>> command = worker_command(kGpusCommand);
-  if (!command) return fail(std::move(command.error()));
+  if (!command) return fail(command);
   std::vector<int> numbers;
   const std::atomic<bool> never{false};
   const Result<int> ended = run_child(
@@ -72,7 +72,7 @@ Result<std::vector<int>> devices_of(const GpuSelection& gpus) {
         if (const std::optional<int> number = hardware_device(line)) numbers.push_back(*number);
       },
       never);
-  if (!ended) return fail(ended.error());
+  if (!ended) return fail(ended);
   return numbers.empty() ? std::vector{kDefault} : numbers;
 }
 

@@ -53,7 +53,7 @@ bool is_in_place(const std::filesystem::path& path, const InPlaceOptions& option
 
 Result<model::ModelFile> InPlaceOpener::open_stored(const std::string& url, const std::string& shown) const {
   Result<std::unique_ptr<FileFolder>> folder = store_->open_folder(url);
-  if (!folder) return fail(std::move(folder.error()));
+  if (!folder) return fail(folder);
   return store_->open_source(url, shown).and_then([&](std::unique_ptr<ByteSource> source) {
     return point_tree::open_in_place(*point_tree::tree_format_of(object_store::shown_url(url)), std::move(source),
                                      std::move(*folder), options_.limits, cache_);
@@ -70,7 +70,7 @@ Result<model::ModelFile> InPlaceOpener::open(const std::filesystem::path& path, 
   }
   const std::filesystem::path described = tree_file(path);
   Result<PositionedFile> file = PositionedFile::open(described);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return point_tree::open_in_place(
       *point_tree::tree_format_of(described.string()), std::make_unique<const FileSource>(std::move(*file), described),
       std::make_unique<const DiskFolder>(described.parent_path()), options_.limits, cache_);

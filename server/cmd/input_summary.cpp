@@ -22,7 +22,7 @@ Facts numbers(const glm::dvec3& v) {
 
 Result<Facts> facts_of_scan(const std::filesystem::path& path) {
   const Result<scan::ScanStream> scan = grid::open_scan(path);
-  if (!scan) return fail(scan.error());
+  if (!scan) return fail(scan);
   const scan::ScanSchema& schema = scan->schema();
   Facts facts{{"kind", "scan"}, {"points", scan->size()}};
   if (!scan->bounds().empty()) {
@@ -45,7 +45,7 @@ Result<Facts> facts_of_scan(const std::filesystem::path& path) {
 
 Result<Facts> facts_of_grid(const std::filesystem::path& path) {
   const Result<builder::GridInput> grid = builder::GridInput::open(path);
-  if (!grid) return fail(grid.error());
+  if (!grid) return fail(grid);
   const model::Volume& volume = grid->volume();
   Facts facts{{"kind", "volume"},
               {"format", grid->header().format},
@@ -60,13 +60,13 @@ Result<Facts> facts_of_grid(const std::filesystem::path& path) {
 
 Result<Facts> facts_of_gaussians(const std::filesystem::path& path) {
   const Result<gaussian::GaussianReader> reader = gaussian::GaussianReader::open(path);
-  if (!reader) return fail(reader.error());
+  if (!reader) return fail(reader);
   return Facts{{"kind", "gaussians"}, {"gaussians", reader->traits().count}, {"degree", reader->traits().degree}};
 }
 
 Result<Facts> facts_of_ellipsoids(const std::filesystem::path& path) {
   const Result<ellipsoid::InputPtr> input = ellipsoid::open_ellipsoids(path);
-  if (!input) return fail(input.error());
+  if (!input) return fail(input);
   Facts facts{{"kind", (*input)->facts().tensors ? "tensors" : "ellipsoids"}, {"samples", (*input)->samples()}};
   facts["attributes"] = Facts::array();
   for (const auto& attribute : (*input)->facts().attributes) facts["attributes"].push_back(attribute.name);
@@ -75,7 +75,7 @@ Result<Facts> facts_of_ellipsoids(const std::filesystem::path& path) {
 
 Result<Facts> facts_of_mesh(const std::filesystem::path& path) {
   const Result<mesh::Mesh> mesh = mesh::read_mesh(path, *mesh::mesh_format_of(path), {});
-  if (!mesh) return fail(mesh.error());
+  if (!mesh) return fail(mesh);
   return Facts{{"kind", "mesh"},
                {"triangles", mesh->triangles()},
                {"materials", mesh->materials.size()},
@@ -114,7 +114,7 @@ std::string text_of(const Facts& value) {
 
 Result<std::string> summarize_input(const std::filesystem::path& path, bool json) {
   const Result<Facts> facts = facts_of(path);
-  if (!facts) return fail(facts.error());
+  if (!facts) return fail(facts);
   Facts all{{"input", path.string()}, {"bytes", builder::bytes_of_input(path)}};
   all.update(*facts);
   if (json) return all.dump(2, ' ', false, Facts::error_handler_t::replace) + "\n";

@@ -37,7 +37,7 @@ Status inspect_input(const InspectOptions& options, const std::string& path, Err
   if (options.verify) return fail(std::move(no_model));
   const Result<std::string> summary = summarize_input(path, options.json);
   if (!summary && builder::kind_of_input(path) == builder::InputKind::kScan) return fail(std::move(no_model));
-  if (!summary) return fail(summary.error());
+  if (!summary) return fail(summary);
   std::cout << *summary;
   return {};
 }
@@ -46,7 +46,7 @@ constexpr const char* kVerified = "verified: every block\n";
 
 Result<ModelSummary> summary_of(const model::ModelFile& model, uint64_t bytes) {
   Result<model::Georeference> georeference = model.georeference();
-  if (!georeference) return fail(std::move(georeference.error()));
+  if (!georeference) return fail(georeference);
   ModelSummary summary = summarize(model, bytes);
   summary.georeference = std::move(*georeference);
   return summary;
@@ -55,7 +55,7 @@ Result<ModelSummary> summary_of(const model::ModelFile& model, uint64_t bytes) {
 /// Of a model that is open.
 Result<ModelSummary> inspected(const model::ModelFile& model, const InspectOptions& options) {
   if (options.verify) {
-    if (Status status = verify_model(model); !status) return fail(std::move(status.error()));
+    if (Status status = verify_model(model); !status) return fail(status);
   }
   return summary_of(model, model.source().size());
 }
@@ -66,9 +66,9 @@ Status inspect_one(const InspectOptions& options, const std::string& path, const
   if (!model && !object_store::is_object_url(path) && model.error().message.ends_with(model::kNoModel)) {
     return inspect_input(options, path, model.error());
   }
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   const Result<ModelSummary> summary = inspected(*model, options);
-  if (!summary) return fail(summary.error());
+  if (!summary) return fail(summary);
   std::cout << (options.json ? to_json(*summary) : to_text(*summary));
   if (options.verify && !options.json) std::cout << kVerified;
   return {};
@@ -78,9 +78,9 @@ Status inspect_one(const InspectOptions& options, const std::string& path, const
 Result<ModelSummary> summarize_joined(std::vector<model::Member> members) {
   uint64_t bytes = 0;
   for (const model::Member& member : members) bytes += member.model->source().size();
-  if (Status placed = service::place_members(members); !placed) return fail(std::move(placed.error()));
+  if (Status placed = service::place_members(members); !placed) return fail(placed);
   const Result<model::ModelFile> joined = model::ModelFile::join(std::move(members));
-  if (!joined) return fail(joined.error());
+  if (!joined) return fail(joined);
   return summary_of(*joined, bytes);
 }
 
@@ -88,11 +88,11 @@ Result<ModelSummary> summarize_joined(std::vector<model::Member> members) {
 Status inspect_several(const InspectOptions& options, std::span<const std::filesystem::path> paths,
                        const object_store::ObjectStore& store, const InPlaceOpener& in_place) {
   Result<std::vector<model::Member>> members = open_members(paths, store, in_place);
-  if (!members) return fail(members.error());
+  if (!members) return fail(members);
   std::vector<ModelSummary> summaries;
   for (const model::Member& member : *members) {
     Result<ModelSummary> summary = inspected(*member.model, options);
-    if (!summary) return fail(std::move(summary.error()));
+    if (!summary) return fail(summary);
     summaries.push_back(std::move(*summary));
   }
   const Result<ModelSummary> joined = summarize_joined(std::move(*members));

@@ -55,7 +55,7 @@ Result<std::vector<model::Member>> open_members(std::span<const fs::path> paths,
   std::vector<model::Member> members;
   for (size_t i = 0; i < paths.size(); ++i) {
     Result<model::ModelFile> model = open_model(paths[i], store, in_place);
-    if (!model) return fail(std::move(model.error()));
+    if (!model) return fail(model);
     members.push_back({names[i], std::make_shared<const model::ModelFile>(std::move(*model))});
   }
   return members;

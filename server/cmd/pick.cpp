@@ -28,16 +28,16 @@ struct PickCommand {
 
 Status pick(const PickCommand& command) {
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
-  if (!blocks) return fail(std::move(blocks.error()));
+  if (!blocks) return fail(blocks);
   const object_store::ObjectStore store(command.store, *blocks);
   const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
   const Result<FoundModel> found = find_shown_model(command.models, command.cache, store, in_place);
-  if (!found) return fail(found.error());
+  if (!found) return fail(found);
   const service::ModelCatalogue& models = *found->models;
   Result<service::PickJob> job = command.flags.request(found->name).and_then([](const wire::PickSurfel& request) {
     return net::to_job(request, access::Rights::unlimited().authorize(request.picture().model()));
   });
-  if (!job) return fail(job.error());
+  if (!job) return fail(job);
   std::promise<Result<std::optional<service::PickedPoint>>> promise;
   service::PickService service(models, command.limits);
   service.pick(std::move(*job), [&promise](auto picked) { promise.set_value(std::move(picked)); });

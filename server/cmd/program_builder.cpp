@@ -32,20 +32,20 @@ class ProgramBuilder : public ScanBuilder {
 
   Result<ScanPreview> preview(const fs::path& scan, uint64_t points, const BuildWatch& watch) override {
     const Result<fs::path> folder = ready_cache_folder(cache_);
-    if (!folder) return fail(folder.error());
+    if (!folder) return fail(folder);
     const Result<ScratchFolder> scratch = ScratchFolder::create(*folder, kPreviewFolder);
-    if (!scratch) return fail(scratch.error());
+    if (!scratch) return fail(scratch);
     const fs::path file = scratch->path() / "preview.surf";
     const fs::path report = scratch->path() / "report.json";
     const Status built = run(scan, file, {"--sample", std::to_string(points), "--report", report.string()}, watch);
-    if (!built) return fail(built.error());
+    if (!built) return fail(built);
     return model::ModelFile::open(file).map([&](model::ModelFile model) {
       return ScanPreview{std::make_shared<const model::ModelFile>(std::move(model)), points_in(report)};
     });
   }
 
   Result<CachedModel> build(const fs::path& scan, const fs::path& target, const BuildWatch& watch) override {
-    if (Status built = run(scan, target, {}, watch); !built) return fail(built.error());
+    if (Status built = run(scan, target, {}, watch); !built) return fail(built);
     return use_built_model(target, cache_);
   }
 
@@ -67,7 +67,7 @@ class ProgramBuilder : public ScanBuilder {
     BuildOutput output(watch);
     const Result<int> ended = run_child(
         arguments, [&](std::string_view line) { output.take(line); }, Preemption(watch.cancelled));
-    if (!ended) return fail(ended.error());
+    if (!ended) return fail(ended);
     if (*ended == 0) return {};
     if (!output.problem().empty()) return fail(ErrorKind::kInvalidInput, output.problem());
     return fail(ErrorKind::kInternal, fmt::format("{}: building a model of it ended with {}", scan.string(), *ended));

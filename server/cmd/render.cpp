@@ -39,7 +39,7 @@ struct RenderCommand {
 
 Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire::DrawPicture& request) {
   Result<service::PictureJob> job = net::to_job(request, access::Rights::unlimited().authorize(request.model()));
-  if (!job) return fail(job.error());
+  if (!job) return fail(job);
   std::promise<Result<service::EncodedPicture>> promise;
   service.draw(0, std::move(*job),
                [&promise](Result<service::EncodedPicture> picture) { promise.set_value(std::move(picture)); });
@@ -59,23 +59,23 @@ void warn_of_unused_options(const service::ModelCatalogue& models, const wire::D
 
 Status render(RenderCommand command) {
   const Result<std::vector<int>> devices = devices_of(command.gpus);
-  if (!devices) return fail(devices.error());
+  if (!devices) return fail(devices);
   command.renderer.gpu = devices->front();
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
-  if (!blocks) return fail(std::move(blocks.error()));
+  if (!blocks) return fail(blocks);
   const object_store::ObjectStore store(command.store, *blocks);
   const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
   const Result<FoundModel> found = find_shown_model(command.models, command.cache, store, in_place);
-  if (!found) return fail(found.error());
+  if (!found) return fail(found);
   const service::ModelCatalogue& models = *found->models;
   const Result<wire::DrawPicture> request = command.flags.request(found->name);
-  if (!request) return fail(request.error());
+  if (!request) return fail(request);
   warn_of_unused_options(models, *request);
   const auto service = service::RenderService::start(
       models,
       service::catalogue_renderers(models, service::local_renderers(command.renderer), service::ShaderWarmUp::kOff),
       command.limits);
-  if (!service) return fail(service.error());
+  if (!service) return fail(service);
   log_device((*service)->devices().front(), command.renderer);
   return protocol::draw_and_save(command.flags, *request,
                                  [&](const wire::DrawPicture& draw) { return draw_and_wait(**service, draw); });

@@ -83,11 +83,11 @@ Result<fs::path> cache_folder(const ScanCacheConfig& config) {
 /// The name of the content of a scan: that of its file, or those of all its files. None as soon as it is cancelled.
 Result<std::optional<std::string>> content_name(const fs::path& scan, const std::atomic<bool>& cancelled) {
   const Result<std::vector<fs::path>> files = builder::files_of_input(scan);
-  if (!files) return fail(files.error());
+  if (!files) return fail(files);
   std::string names;
   for (const fs::path& file : *files) {
     const Result<MappedFile> content = MappedFile::open(file);
-    if (!content) return fail(content.error());
+    if (!content) return fail(content);
     const std::optional<std::string> name = hash_name(content->bytes(), cancelled);
     if (!name) return std::optional<std::string>();
     names += *name;
@@ -104,7 +104,7 @@ Status build_into(const fs::path& scan, const fs::path& target, const ScanCacheC
   options.meshes = config.meshes;
   const Result<builder::BuildReport> report =
       builder::build_model(inputs, target, options, [](const builder::BuildStep&) {});
-  if (!report) return fail(report.error());
+  if (!report) return fail(report);
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   spdlog::info("{}: {} blocks in {:.1f} s", scan.string(), report->blocks, report->seconds);
   return {};
@@ -141,9 +141,9 @@ Result<fs::path> ready_cache_folder(const ScanCacheConfig& config) {
 Result<CacheSlot> find_cache_slot(const fs::path& scan, const ScanCacheConfig& config,
                                   const std::atomic<bool>& cancelled) {
   const Result<fs::path> folder = ready_cache_folder(config);
-  if (!folder) return fail(folder.error());
+  if (!folder) return fail(folder);
   const Result<std::optional<std::string>> name = content_name(scan, cancelled);
-  if (!name) return fail(name.error());
+  if (!name) return fail(name);
   if (!*name) return fail(ErrorKind::kCancelled, scan.string() + ": cancelled");
   CacheSlot slot{*folder / key_of(**name, config), {}};
   slot.model = find_in_cache(slot.target);
@@ -160,9 +160,9 @@ Result<CachedModel> use_built_model(const fs::path& target, const ScanCacheConfi
 Result<CachedModel> model_of_scan(const fs::path& scan, const ScanCacheConfig& config) {
   const std::atomic<bool> never{false};
   Result<CacheSlot> slot = find_cache_slot(scan, config, never);
-  if (!slot) return fail(std::move(slot.error()));
+  if (!slot) return fail(slot);
   if (!slot->model) {
-    if (Status status = build_into(scan, slot->target, config); !status) return fail(status.error());
+    if (Status status = build_into(scan, slot->target, config); !status) return fail(status);
   }
   return use_built_model(slot->target, config);
 }

@@ -128,7 +128,7 @@ Result<std::shared_ptr<const net::StaticFiles>> read_viewer(const std::filesyste
   const std::filesystem::path folder = wanted.empty() ? find_viewer() : wanted;
   if (folder.empty()) return nullptr;
   Result<net::StaticFiles> files = net::StaticFiles::read(folder, limits);
-  if (!files) return fail(files.error());
+  if (!files) return fail(files);
   return std::make_shared<const net::StaticFiles>(std::move(*files));
 }
 
@@ -191,7 +191,7 @@ Result<service::ModelRendererFactory> make_renderers(const ServeCommand& command
                                                      worker::WorkerCounts& counts, std::function<void()> on_reset) {
   if (command.worker.workers == 0) return service::local_renderers(renderer, std::move(on_reset));
   Result<std::vector<std::string>> program = worker_command(kRenderWorker);
-  if (!program) return fail(program.error());
+  if (!program) return fail(program);
   worker::WorkerConfig config;
   config.command = std::move(*program);
   config.renderer = renderer;
@@ -208,7 +208,7 @@ Result<service::ModelRendererFactory> make_renderers(const ServeCommand& command
 Result<std::shared_ptr<service::ModelQueries>> make_queries(const ServeCommand& command, worker::WorkerCounts& counts) {
   if (command.worker.workers == 0) return nullptr;
   Result<std::vector<std::string>> program = worker_command(kQueryWorker);
-  if (!program) return fail(program.error());
+  if (!program) return fail(program);
   worker::QueryWorkerConfig config;
   config.command = std::move(*program);
   config.log_format = command.log_format;
@@ -269,7 +269,7 @@ Result<std::vector<service::FrameRendererFactory>> make_drawers(const ServeComma
   for (const int device : devices) {
     Result<service::ModelRendererFactory> renderers =
         make_renderers(command, renderer_on(device, devices.size(), command.renderer), counts, on_reset);
-    if (!renderers) return fail(std::move(renderers.error()));
+    if (!renderers) return fail(renderers);
     drawers.push_back(service::catalogue_renderers(models, std::move(*renderers), warm_up_of(command), own_place));
   }
   return drawers;
@@ -277,20 +277,20 @@ Result<std::vector<service::FrameRendererFactory>> make_drawers(const ServeComma
 
 Status serve(ServeCommand command) {
   const Result<std::vector<int>> devices = devices_of(command.gpus);
-  if (!devices) return fail(devices.error());
+  if (!devices) return fail(devices);
   command.renderer.gpu = devices->front();
   const ModelPlaces places = places_of(command);
   draw_stores_here(command, places);
   Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer, command.viewer_limits);
-  if (!viewer) return fail(viewer.error());
+  if (!viewer) return fail(viewer);
   command.server.viewer = std::move(*viewer);
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
-  if (!blocks) return fail(std::move(blocks.error()));
+  if (!blocks) return fail(blocks);
   command.store.log_lines = command.server.log_lines;
   const object_store::ObjectStore store(command.store, *blocks);
   const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
   Result<NamedPaths> paths = sort_paths(command.paths, store, in_place);
-  if (!paths) return fail(paths.error());
+  if (!paths) return fail(paths);
   warn_of_unserved_scans(paths->folders);
   service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders), &store);
   StoreFolders stores(store, models, std::move(paths->stores));
@@ -305,15 +305,15 @@ Status serve(ServeCommand command) {
   worker::WorkerCounts query_workers;
   Result<std::vector<service::FrameRendererFactory>> drawers =
       make_drawers(command, *devices, models, places, workers, on_reset);
-  if (!drawers) return fail(drawers.error());
+  if (!drawers) return fail(drawers);
   Result<std::shared_ptr<service::ModelQueries>> queries = make_queries(command, query_workers);
-  if (!queries) return fail(queries.error());
+  if (!queries) return fail(queries);
   service::FrameRendererFactory first = std::move(drawers->front());
   drawers->erase(drawers->begin());
   const auto service =
       service::RenderService::start(models, std::move(first), command.service, std::move(*queries),
                                     store_drawers(command, models, places, on_reset), std::move(*drawers));
-  if (!service) return fail(service.error());
+  if (!service) return fail(service);
   if (command.worker.workers > 0) {
     command.server.workers = [&] { return net::WorkerGauges{gauges_of(workers), gauges_of(query_workers)}; };
   }
@@ -326,7 +326,7 @@ Status serve(ServeCommand command) {
   uploads.taken = [&models](const std::string& name) { return models.has(name); };
   uploads.serve = [&](const std::filesystem::path& scan) { return serve_uploaded(scan, models, *builder); };
   const auto server = net::Server::create(**service, command.server);
-  if (!server) return fail(server.error());
+  if (!server) return fail(server);
   models.on_change([&](bool published) {
     (*service)->models_changed();
     if (published) (*server)->models_changed();

@@ -13,7 +13,7 @@ Status StoreFolders::list() {
   std::map<std::string, std::filesystem::path> models;
   for (const std::string& url : urls_) {
     const Result<std::vector<std::string>> found = store_.list(url);
-    if (!found) return fail(found.error());
+    if (!found) return fail(found);
     for (const std::string& model : *found) models.emplace(object_store::object_name(model), model);
   }
   const size_t count = models.size();

@@ -49,7 +49,7 @@ Result<Principal::Time> parse_expiry(const std::string& text) {
 
 Status add_token(TokenCommand command) {
   Result<std::vector<Principal>> tokens = tokens_of(command.file);
-  if (!tokens) return fail(tokens.error());
+  if (!tokens) return fail(tokens);
   if (std::ranges::find(*tokens, command.principal.name, &Principal::name) != tokens->end()) {
     return fail(ErrorKind::kInvalidInput,
                 command.file.string() + ": there is a token '" + command.principal.name + "' already");
@@ -71,7 +71,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 Status list_tokens(const fs::path& file) {
   const auto tokens = access::read_tokens(file);
-  if (!tokens) return fail(tokens.error());
+  if (!tokens) return fail(tokens);
   const auto now = std::chrono::system_clock::now();
   for (const Principal& token : *tokens) {
     std::cout << token.name << '\t' << (token.models.empty() ? "-" : joined(token.models)) << '\t'
@@ -84,7 +84,7 @@ Status list_tokens(const fs::path& file) {
 
 Status revoke_token(const fs::path& file, const std::string& name) {
   auto tokens = access::read_tokens(file);
-  if (!tokens) return fail(tokens.error());
+  if (!tokens) return fail(tokens);
   if (std::erase_if(*tokens, [&](const Principal& token) { return token.name == name; }) == 0) {
     return fail(ErrorKind::kNotFound, file.string() + ": there is no token '" + name + "'");
   }

@@ -17,7 +17,7 @@ constexpr size_t kTogether = 256;
 
 Status verify_model(const model::ModelFile& model, kinds::KindTable kinds) {
   const Result<std::vector<uint32_t>> numbers = kinds::find_kinds(model, kinds);
-  if (!numbers) return fail(numbers.error());
+  if (!numbers) return fail(numbers);
   const auto decode = [&](size_t block) {
     return kinds[(*numbers)[model.blocks()[block].kind]]->decode(model, static_cast<uint32_t>(block));
   };

@@ -98,18 +98,18 @@ class FakeBuilder : public ScanBuilder {
   Result<CacheSlot> find(const fs::path& scan, const std::atomic<bool>& cancelled) override {
     const std::string name = scan.stem().string();
     if (builds_->cached.contains(name)) {
-      if (Status waited = wait("find " + name, cancelled); !waited) return fail(waited.error());
+      if (Status waited = wait("find " + name, cancelled); !waited) return fail(waited);
       return CacheSlot{model_, CachedModel{model_, nullptr}};
     }
     return CacheSlot{model_, {}};
   }
   Result<ScanPreview> preview(const fs::path& scan, uint64_t /*points*/, const BuildWatch& watch) override {
-    if (Status status = wait("preview " + scan.stem().string(), watch.cancelled); !status) return fail(status.error());
+    if (Status status = wait("preview " + scan.stem().string(), watch.cancelled); !status) return fail(status);
     return ScanPreview{std::make_shared<const model::ModelFile>(std::move(*model::ModelFile::open(model_))), 0};
   }
   Result<CachedModel> build(const fs::path& scan, const fs::path& target, const BuildWatch& watch) override {
     watch.progress(0.5, 7);
-    if (Status status = wait("build " + scan.stem().string(), watch.cancelled); !status) return fail(status.error());
+    if (Status status = wait("build " + scan.stem().string(), watch.cancelled); !status) return fail(status);
     return CachedModel{target, nullptr};
   }
 

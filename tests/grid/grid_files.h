@@ -85,7 +85,7 @@ inline std::filesystem::path write(const std::filesystem::path& path, std::strin
 /// The samples of a grid as numbers, or the error.
 inline Result<std::vector<double>> read_values(grid::GridReader& reader) {
   std::vector<double> values(reader.header().samples() * reader.header().components());
-  if (Status status = reader.read(std::span(values)); !status) return fail(status.error());
+  if (Status status = reader.read(std::span(values)); !status) return fail(status);
   return values;
 }
 

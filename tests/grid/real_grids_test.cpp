@@ -25,7 +25,7 @@ Result<Digest> digest_of(GridReader& reader) {
   testing::Sha256 hash;
   Digest digest;
   for (uint64_t k = 0; k < header.size[2]; ++k) {
-    if (Status status = reader.read(std::span(slice)); !status) return fail(status.error());
+    if (Status status = reader.read(std::span(slice)); !status) return fail(status);
     hash.add_values<double>(slice);
     for (const double value : slice) {
       digest.min = std::min(digest.min, value);

@@ -28,7 +28,7 @@ static_assert(sizeof(StoredBall) == 20);
 /// The balls of a block. Fails if the bytes do not match the tables.
 Result<std::vector<StoredBall>> read_balls(const model::ModelFile& model, uint32_t block) {
   const Result<model::StoredBlock> stored = model.stored(block);
-  if (!stored) return fail(stored.error());
+  if (!stored) return fail(stored);
   const auto wrong = [&] { return fail(model.named(block, {ErrorKind::kInvalidInput, "no balls"})); };
   if (stored->bytes.size() != stored->items * sizeof(StoredBall)) return wrong();
   std::vector<StoredBall> balls(stored->items);
@@ -126,7 +126,7 @@ model::EncodedBlock encode_balls(std::span<const Ball> balls) {
 
 Result<residency::PackedBlock> BallKind::load(const model::ModelFile& model, uint32_t block, bool attributes) const {
   const Result<std::vector<StoredBall>> balls = read_balls(model, block);
-  if (!balls) return fail(balls.error());
+  if (!balls) return fail(balls);
   const Result<model::StoredBlock> stored = model.stored(block);
   residency::PackedBlock packed;
   packed.lattice = {stored->grid, stored->origin, glm::ivec3(0), stored->extent};
@@ -142,7 +142,7 @@ Result<residency::PackedBlock> BallKind::load(const model::ModelFile& model, uin
 Result<std::shared_ptr<const kinds::SourceBlock>> BallKind::decode(const model::ModelFile& model,
                                                                    uint32_t block) const {
   const Result<std::vector<StoredBall>> stored = read_balls(model, block);
-  if (!stored) return fail(stored.error());
+  if (!stored) return fail(stored);
   const Result<model::StoredBlock> place = model.stored(block);
   std::vector<Ball> balls;
   for (const StoredBall& ball : *stored) {

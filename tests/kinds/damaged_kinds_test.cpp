@@ -54,14 +54,14 @@ struct Source {
 /// Loads every block for the GPU, and decodes it for picks.
 Status read_all(const std::filesystem::path& path) {
   const Result<model::ModelFile> model = model::ModelFile::open(path);
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   const Result<std::vector<uint32_t>> numbers = find_kinds(*model, built_in_kinds());
   if (!numbers) return fail(ErrorKind::kUnsupported, path.string() + ": " + numbers.error().message);
   for (uint32_t block = 0; block < model->blocks().size(); ++block) {
     const Kind& kind = *built_in_kinds()[(*numbers)[model->blocks()[block].kind]];
     const Result<residency::PackedBlock> packed = kind.load(*model, block, true);
-    if (!packed) return fail(packed.error());
-    if (const auto decoded = kind.decode(*model, block); !decoded) return fail(decoded.error());
+    if (!packed) return fail(packed);
+    if (const auto decoded = kind.decode(*model, block); !decoded) return fail(decoded);
   }
   return {};
 }

@@ -86,10 +86,10 @@ bool usable(const DecodedBlock& block) {
 
 Status read_all(const std::filesystem::path& path) {
   const Result<ModelFile> model = ModelFile::open(path);
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   for (size_t b = 0; b < model->blocks().size(); ++b) {
     const Result<DecodedBlock> block = model->decode(b);
-    if (!block) return fail(block.error());
+    if (!block) return fail(block);
     if (block->size() != model->blocks()[b].surfels || !usable(*block)) {
       return fail(ErrorKind::kInternal, "a wrong decode");
     }

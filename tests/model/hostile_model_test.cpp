@@ -53,10 +53,10 @@ void repair_checksums(std::vector<char>& bytes) {
 /// Opens a model and decodes all its blocks. Returns the first error.
 Status read_all(const std::filesystem::path& path) {
   const Result<ModelFile> model = ModelFile::open(path);
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   for (size_t b = 0; b < model->blocks().size(); ++b) {
     const Result<DecodedBlock> block = model->decode(b);
-    if (!block) return fail(block.error());
+    if (!block) return fail(block);
     if (block->size() != model->blocks()[b].surfels) return fail(ErrorKind::kInternal, "a wrong decode");
   }
   return {};
@@ -222,7 +222,7 @@ Status read_tree(const TestFolder& folder, const std::vector<Claim>& claims) {
   repair_checksums(bytes);
   std::ofstream(folder / "tree.surf", std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   const Result<ModelFile> model = ModelFile::open(folder / "tree.surf");
-  return model ? Status() : fail(model.error());
+  return model ? Status() : fail(model);
 }
 
 TEST(HostileModel, BlocksThatMakeNoTreeAreRefused) {

@@ -36,7 +36,7 @@ surfel::SurfelCloud coarse_cloud(size_t count) {
 /// parents.
 Result<ModelFile> write_two_levels(const std::filesystem::path& path) {
   Result<ModelWriter> writer = ModelWriter::create(path, schema_of(leaf_cloud(1)));
-  if (!writer) return fail(writer.error());
+  if (!writer) return fail(writer);
   const ldc::OctreeKey root;
   const ldc::OctreeKey low = root.child(0);
   const uint32_t a = *writer->add(encode(leaf_cloud(20)), low.child(1), {});
@@ -45,7 +45,7 @@ Result<ModelFile> write_two_levels(const std::filesystem::path& path) {
   const uint32_t ab = *writer->add(encode(coarse_cloud(10)), low, std::vector{a, b});
   EXPECT_TRUE(writer->add(encode(coarse_cloud(5)), root, std::vector{c, ab}));
   const Result<WriteReport> report = writer->finish();
-  if (!report) return fail(report.error());
+  if (!report) return fail(report);
   EXPECT_EQ(report->surfels, 90U);
   EXPECT_EQ(report->blocks, 5U);
   return ModelFile::open(path);

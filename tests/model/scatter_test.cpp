@@ -132,9 +132,9 @@ std::vector<char> with_tables(std::vector<char> bytes, Change change) {
 
 Status decode_all(const std::filesystem::path& path) {
   const Result<ModelFile> model = ModelFile::open(path);
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   for (size_t b = 0; b < model->blocks().size(); ++b) {
-    if (const Result<DecodedBlock> block = model->decode(b); !block) return fail(block.error());
+    if (const Result<DecodedBlock> block = model->decode(b); !block) return fail(block);
   }
   return {};
 }

@@ -53,7 +53,7 @@ class RemoteSourceTest : public ::testing::Test {
   }
   Result<std::unique_ptr<RemoteSource>> try_open() {
     Result<std::unique_ptr<HttpClient>> client = HttpClient::start(config_);
-    if (!client) return fail(client.error());
+    if (!client) return fail(client);
     source_.reset();
     client_ = std::move(*client);
     return RemoteSource::open(*client_, StorePlace{server_.url(kPath), {}, false}, "the model");
@@ -61,7 +61,7 @@ class RemoteSourceTest : public ::testing::Test {
   [[nodiscard]] Result<std::string> read(const ByteRange& range) const {
     std::string bytes(range.size, '\0');
     const Status status = source_->read(range.offset, std::as_writable_bytes(std::span(bytes)));
-    if (!status) return fail(status.error());
+    if (!status) return fail(status);
     return bytes;
   }
   [[nodiscard]] std::string expected(const ByteRange& range) const { return bytes_.substr(range.offset, range.size); }

@@ -99,7 +99,7 @@ Result<picture::Frame> draw_within(size_t gpu_bytes, const testing::ModelPointer
   return std::async(std::launch::async,
                     [&]() -> Result<picture::Frame> {
                       Result<std::unique_ptr<Renderer>> renderer = Renderer::create({.gpu_bytes = gpu_bytes});
-                      if (!renderer) return fail(renderer.error());
+                      if (!renderer) return fail(renderer);
                       const std::atomic<bool> never{false};
                       return (*renderer)->draw(model, request, never);
                     })

@@ -37,11 +37,11 @@ Result<Points> read(const std::string& content, const Selection& selection) {
       las_rows(testing::as_bytes(content), selection).and_then([&](std::unique_ptr<RowSource> all) {
         return select_rows(std::move(all), selection);
       });
-  if (!rows) return fail(rows.error());
+  if (!rows) return fail(rows);
   Points points;
   for (size_t piece = 0; piece < (*rows)->pieces(); ++piece) {
     const Result<PointTable> table = (*rows)->read(piece);
-    if (!table) return fail(table.error());
+    if (!table) return fail(table);
     for (size_t i = 0; i < table->rows; ++i) {
       glm::dvec3 p;
       for (size_t axis = 0; axis < 3; ++axis) {

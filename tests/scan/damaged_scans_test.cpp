@@ -265,10 +265,10 @@ double processor_seconds() {
 
 /// Reads all pieces, and keeps none.
 Status read_all(const Result<ScanStream>& stream) {
-  if (!stream) return fail(stream.error());
+  if (!stream) return fail(stream);
   for (size_t piece = 0; piece < stream->pieces(); ++piece) {
     const Result<ScanPoints> points = stream->read(piece);
-    if (!points) return fail(points.error());
+    if (!points) return fail(points);
     EXPECT_TRUE(points->normals.empty() || points->normals.size() == points->size());
     EXPECT_TRUE(!points->colors || points->colors->values.size() == points->size());
   }

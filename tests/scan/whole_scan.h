@@ -40,11 +40,11 @@ inline void append_points(scan::ScanPoints& to, const scan::ScanPoints& more) {
 }
 
 inline Result<WholeScan> whole(const Result<scan::ScanStream>& stream) {
-  if (!stream) return fail(stream.error());
+  if (!stream) return fail(stream);
   WholeScan scan;
   for (size_t piece = 0; piece < stream->pieces(); ++piece) {
     const Result<scan::ScanPoints> points = stream->read(piece);
-    if (!points) return fail(points.error());
+    if (!points) return fail(points);
     append_points(scan, *points);
   }
   const scan::ScanSchema& schema = stream->schema();

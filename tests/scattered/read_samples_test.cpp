@@ -19,7 +19,7 @@ Result<Samples> read(const std::string& text, const FieldOptions& options, uint6
   const std::filesystem::path path = folder / "points.csv";
   std::ofstream(path) << text;
   const Result<scan::ScanStream> scan = scan::ScanStream::open(path);
-  if (!scan) return fail(scan.error());
+  if (!scan) return fail(scan);
   return read_samples(*scan, path, options, memory);
 }
 

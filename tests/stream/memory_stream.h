@@ -36,7 +36,7 @@ inline Result<std::string> read_all(stream::ByteStream& stream, size_t portion =
   std::string text;
   for (std::string part(portion, '\0');; part.resize(portion)) {
     const Result<size_t> read = stream.read(std::as_writable_bytes(std::span(part)));
-    if (!read) return fail(read.error());
+    if (!read) return fail(read);
     text.append(part, 0, *read);
     if (*read < portion) return text;
   }

@@ -80,7 +80,7 @@ model::EncodedBlock encoded(const PlainBrick& brick, const std::vector<uint16_t>
 
 Result<std::pair<PlainBrick, std::vector<uint16_t>>> read(const model::ModelFile& model, uint32_t block) {
   const Result<model::StoredBlock> stored = model.stored(block);
-  if (!stored) return fail(stored.error());
+  if (!stored) return fail(stored);
   PlainBrick brick;
   std::memcpy(&brick, stored->bytes.data(), sizeof brick);
   std::vector<uint16_t> codes((stored->bytes.size() - sizeof brick) / sizeof(uint16_t));
@@ -106,7 +106,7 @@ std::vector<uint32_t> children_of(const glm::u32vec3& brick, const BrickNumbers&
 Result<residency::PackedBlock> PlainBrickKind::load(const model::ModelFile& model, uint32_t block,
                                                     bool /*attributes*/) const {
   const auto found = read(model, block);
-  if (!found) return fail(found.error());
+  if (!found) return fail(found);
   const auto& [plain, codes] = *found;
   const volume::Brick brick{plain.header, codes};
   residency::PackedBlock packed;

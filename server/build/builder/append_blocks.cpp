@@ -24,9 +24,9 @@ class AppendPass {
     clock.begin("copying blocks", plan_.kept.size());
     for (const uint32_t block : plan_.kept) {
       const Result<uint32_t> number = copy(block);
-      if (!number) return fail(number.error());
+      if (!number) return fail(number);
       Result<model::DecodedBlock> decoded = inputs_.model.decode(block);
-      if (!decoded) return fail(std::move(decoded.error()));
+      if (!decoded) return fail(decoded);
       const uint32_t parent = inputs_.model.blocks()[block].parent;
       std::optional<ldc::OctreeKey> parent_key;
       if (parent != ldc::BlockEntry::kNoParent) parent_key = key_of(parent);
@@ -45,7 +45,7 @@ class AppendPass {
     return work_in_order(
         parts.size(), parts.parts_at_once(memory), [&](size_t part) -> Result<std::function<Status()>> {
           Result<FinishedPart> surfels = parts.take(part);
-          if (!surfels) return fail(std::move(surfels.error()));
+          if (!surfels) return fail(surfels);
           restore_former(surfels->cloud);
           surfels->cloud.estimated_normals = !new_normals;
           surfels->cloud.estimated_radii = surfels->cloud.estimated_radii && !inputs_.former.stated_radii;
@@ -81,7 +81,7 @@ class AppendPass {
       children.push_back(*number);
     }
     const Result<model::StoredBlock> stored = inputs_.model.stored(block);
-    if (!stored) return fail(stored.error());
+    if (!stored) return fail(stored);
     const ldc::BlockEntry& entry = inputs_.model.blocks()[block];
     model::EncodedBlock same;
     same.bytes.assign(stored->bytes.begin(), stored->bytes.end());
@@ -123,7 +123,7 @@ Result<uint64_t> write_grown_blocks(const AppendInputs& inputs, const AppendPlan
   if (status) status = pass.write_regions(parts, memory, options, clock);
   clock.begin("writing levels above", 1);
   if (status) status = pass.write_levels_above(common);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return pass.copied();
 }
 

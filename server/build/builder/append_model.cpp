@@ -45,7 +45,7 @@ Result<Placement> place_in(const model::Georeference& georeference, const System
     systems.assigned = text_of_system(georeference.source.known() ? georeference.source : georeference.system);
   }
   Result<Placement> placement = inputs.place(systems);
-  if (!placement) return fail(placement.error().kind, paths.front().string() + ": " + placement.error().message);
+  if (!placement) return fail_about(paths.front().string(), placement);
   return placement;
 }
 
@@ -61,7 +61,7 @@ Result<GrownRoot> grown_root(const model::ModelFile& model, const BuildInputs& a
   const uint32_t top = model.tree().roots().front();
   if (is_leaf(model, top)) return GrownRoot{geometry::root_cube(all), {}};
   const Result<model::StoredBlock> stored = model.stored(top);
-  if (!stored) return fail(stored.error());
+  if (!stored) return fail(stored);
   const std::optional<geometry::RootCube> root = root_of(model.blocks(), stored->grid);
   if (!root || model.tree().roots().size() != 1) {
     return refuse_append(model.path(), "cannot be added to, because its blocks lie in no cube");
@@ -81,7 +81,7 @@ Result<NewPoints> find_places(const BuildInputs& added, const geometry::RootCube
       work_in_order(added.pieces(), append_threads(), [&](size_t i) -> Result<std::function<Status()>> {
         estimation::SurfelReport report;
         const Result<InputPiece> piece = added.read(i, report);
-        if (!piece) return fail(piece.error());
+        if (!piece) return fail(piece);
         auto own = std::make_shared<NewPoints>(root);
         own->add(piece->points.positions);
         return [&, own] {
@@ -90,7 +90,7 @@ Result<NewPoints> find_places(const BuildInputs& added, const geometry::RootCube
           return Status();
         };
       });
-  if (!status) return fail(status.error());
+  if (!status) return fail(status);
   return places;
 }
 
@@ -114,7 +114,7 @@ Result<model::AttributeStatistics> kept_statistics(const model::ModelFile& model
   const size_t samples = std::min(kSampledBlocks, leaves.size());
   for (size_t i = 0; i < samples; ++i) {
     Result<model::DecodedBlock> block = model.decode(leaves[i * leaves.size() / samples], model::WantedScalars::kDrawn);
-    if (!block) return fail(std::move(block.error()));
+    if (!block) return fail(block);
     kept.add_intensities(statistics_of(std::move(*block), info),
                          static_cast<double>(leaves.size()) / static_cast<double>(samples));
   }
@@ -148,21 +148,21 @@ Status append_points(const AppendInputs& inputs, const AppendOptions& options, S
     });
   };
   Result<MemoryPlan> memory = memory_for(inputs.added.held_bytes());
-  if (!memory) return fail(std::move(memory.error()));
+  if (!memory) return fail(memory);
   const uint64_t limit = options.part_points.value_or(memory->part_points);
   const AppendPlan plan = plan_append(inputs.model.tree(), inputs.root, inputs.places, limit);
   memory = memory_for(inputs.added.held_bytes() + bytes_of_front(inputs.model, plan));
-  if (!memory) return fail(std::move(memory.error()));
+  if (!memory) return fail(memory);
 
   auto frame = std::make_unique<const BuildFrame>(inputs.added, inputs.former.lattices, inputs.root.root,
                                                   all_bounds(inputs.model, inputs.added), inputs.model.info().oriented,
                                                   plan.regions);
   Result<SpoolFile> spool = SpoolFile::create(target);
-  if (!spool) return fail(std::move(spool.error()));
+  if (!spool) return fail(spool);
   PartStore store(std::move(*spool), inputs.schema, frame->names, frame->parts.size());
   const Result<model::AttributeStatistics> given_up =
       distribute_points(inputs, plan, *frame, store, clock, report.scan);
-  if (!given_up) return fail(given_up.error());
+  if (!given_up) return fail(given_up);
   BuildParts parts(std::move(frame), std::move(store));
   if (parts.parts_at_once(*memory) == 0) {
     return fail(ErrorKind::kLimit, target.string() +
@@ -174,16 +174,16 @@ Status append_points(const AppendInputs& inputs, const AppendOptions& options, S
   report.radii = radii_of(inputs.added.schemas(), parts.radii().subspan(inputs.former.lattices.size()));
 
   const Result<model::AttributeStatistics> statistics = kept_statistics(inputs.model, plan, *given_up);
-  if (!statistics) return fail(statistics.error());
+  if (!statistics) return fail(statistics);
   const surfel::SurfelCloud common = common_cloud_of(inputs);
   Result<model::ModelWriter> writer = model::ModelWriter::create(target, model::schema_of(common));
-  if (!writer) return fail(std::move(writer.error()));
+  if (!writer) return fail(writer);
   writer->set_georeference(report.georeference);
   writer->add_statistics(*statistics);
   const Result<uint64_t> copied = write_grown_blocks(inputs, plan, parts, *memory, options, common, clock, *writer);
-  if (!copied) return fail(copied.error());
+  if (!copied) return fail(copied);
   const Result<model::WriteReport> written = writer->finish();
-  if (!written) return fail(written.error());
+  if (!written) return fail(written);
   report.surfels = written->surfels;
   report.blocks = written->blocks;
   report.bytes = written->bytes;
@@ -200,11 +200,11 @@ Status append_scans(std::span<const fs::path> paths, const model::ModelFile& mod
   };
   Result<BuildInputs> added =
       BuildInputs::open(paths, open, model.info().z_up, report.memory_budget, {}, [&clock](double) { clock.step(); });
-  if (!added) return fail(std::move(added.error()));
+  if (!added) return fail(added);
   const Result<model::Georeference> georeference = model.georeference();
-  if (!georeference) return fail(georeference.error());
+  if (!georeference) return fail(georeference);
   Result<Placement> placement = place_in(*georeference, options.systems, model.path(), paths, *added);
-  if (!placement) return fail(std::move(placement.error()));
+  if (!placement) return fail(placement);
   report.points_in_scans = added->size_of_files();
   report.transformed = std::move(placement->transformed);
   report.georeference = *georeference;
@@ -217,11 +217,11 @@ Status append_scans(std::span<const fs::path> paths, const model::ModelFile& mod
   report.scan.notes.insert(report.scan.notes.end(), placement->notes.begin(), placement->notes.end());
   add_former_columns(schema);
   Result<FormerModel> former = former_model(model, leaves_of(model));
-  if (!former) return fail(std::move(former.error()));
+  if (!former) return fail(former);
   const Result<GrownRoot> root = grown_root(model, *added, paths.front());
-  if (!root) return fail(root.error());
+  if (!root) return fail(root);
   Result<NewPoints> places = find_places(*added, root->root, clock);
-  if (!places) return fail(std::move(places.error()));
+  if (!places) return fail(places);
   return append_points({model, *added, std::move(schema), std::move(*former), *root, std::move(*places)}, options,
                        clock, report);
 }
@@ -232,20 +232,20 @@ Result<BuildReport> append_to_model(std::span<const fs::path> inputs, const fs::
                                     const AppendOptions& options, const BuildProgress& progress) {
   const Stopwatch stopwatch;
   BuildReport report;
-  if (Status status = check_target(path, inputs); !status) return fail(std::move(status.error()));
+  if (Status status = check_target(path, inputs); !status) return fail(status);
   const Result<uint64_t> budget = memory_budget(options.memory);
-  if (!budget) return fail(budget.error().kind, path.string() + ": " + budget.error().message);
+  if (!budget) return fail_about(path.string(), budget);
   report.memory_budget = *budget;
   const Result<model::ModelFile> model = model::ModelFile::open(path);
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   Status status = check_grown_model(*model);
   if (status) status = check_added_scans(inputs);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   {
     StageClock clock(progress, report);
     status = append_scans(inputs, *model, options, clock, report);
   }
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   report.seconds = stopwatch.seconds();
   report.peak_memory = peak_resident_bytes();
   return report;

@@ -68,7 +68,7 @@ class Distribution {
 
   Step add_leaf(uint32_t leaf, StageClock& clock) {
     Result<model::DecodedBlock> block = inputs_.model.decode(leaf);
-    if (!block) return fail(block.error());
+    if (!block) return fail(block);
     const bool own = plan_.region_of[leaf] != AppendPlan::kNoRegion;
     const double spacing = inputs_.model.blocks()[leaf].spacing;
     const auto is_affected = [&](const glm::dvec3& position, float radius) {
@@ -92,7 +92,7 @@ class Distribution {
   Step add_piece(size_t number, StageClock& clock, estimation::SurfelReport& report) {
     estimation::SurfelReport own;
     Result<InputPiece> piece = inputs_.added.read(number, own);
-    if (!piece) return fail(std::move(piece.error()));
+    if (!piece) return fail(piece);
     piece->source += inputs_.former.lattices.size();
     piece->points = scan::conform(std::move(piece->points), inputs_.schema);
     const std::vector<PartRows> rows = rows_by_part(piece->points, frame_, true);
@@ -116,7 +116,7 @@ Result<model::AttributeStatistics> distribute_points(const AppendInputs& inputs,
                                                      const BuildFrame& frame, PartStore& store, StageClock& clock,
                                                      estimation::SurfelReport& report) {
   Distribution distribution(inputs, plan, frame, store);
-  if (Status status = distribution.add_all(clock, report); !status) return fail(std::move(status.error()));
+  if (Status status = distribution.add_all(clock, report); !status) return fail(status);
   return distribution.given_up();
 }
 

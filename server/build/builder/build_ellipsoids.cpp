@@ -32,7 +32,7 @@ Result<std::vector<Opened>> open_all(std::span<const std::filesystem::path> path
     const bool asked = options.kind == InputKind::kEllipsoids;
     Result<ellipsoid::InputPtr> input = ellipsoid::open_ellipsoids(
         path, {options.tensor_order, options.sample, asked, {memory - std::min(memory, held)}});
-    if (!input) return fail(std::move(input.error()));
+    if (!input) return fail(input);
     held += (*input)->held_bytes();
     model::EllipsoidSource source = (*input)->facts();
     inputs.push_back({path, std::move(*input), std::move(source), {}});
@@ -60,7 +60,7 @@ Status for_each_run(Opened& opened, model::EllipsoidCounts& counts, StageClock& 
   while (!opened.input->at_end()) {
     const uint64_t before = counts.samples;
     const Result<ellipsoid::Ellipsoids> run = opened.input->read(counts);
-    if (!run) return fail(run.error());
+    if (!run) return fail(run);
     if (Status status = use(*run); !status) return status;
     clock.step(counts.samples - before);
   }
@@ -115,7 +115,7 @@ Status write(Opened& opened, uint32_t number, const std::filesystem::path& targe
 Status build_ellipsoids(std::span<const std::filesystem::path> inputs, ModelOutput& output, const BuildOptions& options,
                         StageClock& clock, BuildReport& report) {
   Result<std::vector<Opened>> opened = open_all(inputs, options, report.memory_budget);
-  if (!opened) return fail(std::move(opened.error()));
+  if (!opened) return fail(opened);
   uint64_t samples = 0;
   for (const Opened& one : *opened) {
     samples += one.input->samples();
@@ -127,7 +127,7 @@ Status build_ellipsoids(std::span<const std::filesystem::path> inputs, ModelOutp
     if (Status status = survey(one, clock, report); !status) return status;
   }
   const Result<model::ModelWriter*> writer = output.writer(schema_of(*opened, options));
-  if (!writer) return fail(writer.error());
+  if (!writer) return fail(writer);
   std::vector<model::EllipsoidSource> sources;
   for (Opened& one : *opened) {
     const auto number = static_cast<uint32_t>(sources.size());

@@ -28,7 +28,7 @@ Result<Readers> open_readers(std::span<const std::filesystem::path> inputs, uint
   uint64_t held = 0;
   for (const std::filesystem::path& input : inputs) {
     Result<gaussian::GaussianReader> reader = gaussian::GaussianReader::open(input, {memory - std::min(memory, held)});
-    if (!reader) return fail(std::move(reader.error()));
+    if (!reader) return fail(reader);
     held += reader->held_bytes();
     readers.push_back(std::move(*reader));
   }
@@ -68,7 +68,7 @@ Status for_each_run(Readers& readers, int degree, std::optional<uint64_t> sample
     reader.rewind();
     while (reader.position() < reader.traits().count) {
       Result<gaussian::Gaussians> run = reader.read(kRun);
-      if (!run) return fail(std::move(run.error()));
+      if (!run) return fail(run);
       raise_degree(*run, reader.traits().degree, degree);
       sample.thin(*run);
       if (Status status = use(*run); !status) return status;
@@ -95,7 +95,7 @@ Result<geometry::Box> survey(Readers& readers, std::optional<uint64_t> sampled, 
     clock.step();
     return {};
   });
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return box;
 }
 
@@ -129,12 +129,12 @@ bool holds_gaussians(const std::filesystem::path& input) {
 Status build_gaussians(std::span<const std::filesystem::path> inputs, ModelOutput& output, const BuildOptions& options,
                        StageClock& clock, BuildReport& report) {
   Result<Readers> readers = open_readers(inputs, report.memory_budget);
-  if (!readers) return fail(std::move(readers.error()));
+  if (!readers) return fail(readers);
   if (Status status = check_alike(*readers, inputs); !status) return status;
   clock.begin("reading", runs_of(*readers));
   for (const gaussian::GaussianReader& reader : *readers) report.points_in_scans += reader.traits().count;
   const Result<geometry::Box> box = survey(*readers, options.sample, clock, report);
-  if (!box) return fail(box.error());
+  if (!box) return fail(box);
   if (report.gaussians == 0) {
     return fail(ErrorKind::kInvalidInput, output.target().string() + ": no usable Gaussian is left of the input");
   }
@@ -151,7 +151,7 @@ Status build_gaussians(std::span<const std::filesystem::path> inputs, ModelOutpu
   if (status) status = sorter.finish();
   if (!status) return status;
   const Result<model::ModelWriter*> writer = output.writer(schema_of(*readers, inputs, options));
-  if (!writer) return fail(writer.error());
+  if (!writer) return fail(writer);
   clock.begin("writing blocks", static_cast<size_t>(report.gaussians));
   ++report.parts;
   return write_gaussian_tree(sorter, root, {degree, traits.antialiased, traits.flat}, **writer,

@@ -53,7 +53,7 @@ Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> pat
     progress(static_cast<double>(inputs.streams_.size()) / static_cast<double>(paths.size()));
     const scan::DecodingLimit limit{max_bytes - inputs.held_bytes()};
     Result<scan::ScanStream> stream = open ? open(path, limit, sample) : grid::open_scan(path, limit, sample);
-    if (!stream) return fail(std::move(stream.error()));
+    if (!stream) return fail(stream);
     InputFacts facts{stream->facts(), stream->bounds(), stream->pieces()};
     inputs.add(std::move(facts), std::move(*stream));
   }
@@ -71,7 +71,7 @@ Result<BuildInputs> BuildInputs::reopen(const Reopening& reopening, std::vector<
       const scan::DecodingLimit limit{reopening.max_bytes - inputs.held_bytes()};
       Result<scan::ScanStream> opened =
           grid::reopen_scan(reopening.paths[i], limit, reopening.selection, facts[i].scan);
-      if (!opened) return fail(std::move(opened.error()));
+      if (!opened) return fail(opened);
       if (opened->pieces() != facts[i].pieces) {
         return fail(ErrorKind::kInvalidInput, reopening.paths[i].string() + ": has changed since it was first read");
       }
@@ -81,7 +81,7 @@ Result<BuildInputs> BuildInputs::reopen(const Reopening& reopening, std::vector<
   }
   inputs.z_up_ = reopening.z_up;
   Result<Placement> placement = inputs.find_place(reopening.systems);
-  if (!placement) return fail(std::move(placement.error()));
+  if (!placement) return fail(placement);
   return inputs;
 }
 
@@ -110,7 +110,7 @@ Result<Placement> BuildInputs::place(const SystemOptions& options) {
   if (!placement) return placement;
   for (size_t input = 0; input < streams_.size(); ++input) {
     if (!moves_[input]) continue;
-    if (Status status = measure(input); !status) return fail(std::move(status.error()));
+    if (Status status = measure(input); !status) return fail(status);
   }
   return placement;
 }
@@ -122,7 +122,7 @@ Status BuildInputs::measure(size_t input) {
   oneapi::tbb::parallel_for(size_t{0}, stream.pieces(), [&](size_t piece) {
     Result<scan::ScanPoints> points = stream.read(piece);
     if (!points) {
-      boxes[piece] = fail(std::move(points.error()));
+      boxes[piece] = fail(points);
       return;
     }
     moves_[input]->apply(points->positions);
@@ -135,7 +135,7 @@ Status BuildInputs::measure(size_t input) {
   geometry::Box& bounds = facts_[input].bounds;
   bounds = {};
   for (const Result<geometry::Box>& box : boxes) {
-    if (!box) return fail(box.error());
+    if (!box) return fail(box);
     bounds.include(*box);
   }
   return {};
@@ -173,7 +173,7 @@ Result<InputPiece> BuildInputs::read(size_t piece, estimation::SurfelReport& rep
   const auto& [source, number] = pieces_[piece];
   SURFCAST_EXPECTS(streams_[source].has_value());
   Result<scan::ScanPoints> points = streams_[source]->read(number);
-  if (!points) return fail(std::move(points.error()));
+  if (!points) return fail(points);
   if (moves_[source]) move_points(*moves_[source], *points);
   report.points_read += points->size();
   estimation::drop_unusable_points(*points, report);

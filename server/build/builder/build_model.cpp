@@ -41,7 +41,7 @@ class ModelPass {
     return work_in_order(parts_.size(), parts_.parts_at_once(memory),
                          [&](size_t part) -> Result<std::function<Status()>> {
                            Result<PartBlocks> blocks = make_blocks(part);
-                           if (!blocks) return fail(std::move(blocks.error()));
+                           if (!blocks) return fail(blocks);
                            return [this, &clock, shared = std::make_shared<PartBlocks>(std::move(*blocks))] {
                              clock.step();
                              return write(*shared);
@@ -59,7 +59,7 @@ class ModelPass {
  private:
   Result<PartBlocks> make_blocks(size_t part) {
     Result<FinishedPart> surfels = simplified_ ? std::move(*simplified_) : parts_.take(part);
-    if (!surfels) return fail(std::move(surfels.error()));
+    if (!surfels) return fail(surfels);
     return make_part_blocks(std::move(*surfels), parts_.plan(part), parts_.root(), precision_);
   }
 
@@ -117,14 +117,14 @@ Status write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& mem
   if (options.simplify) {
     if (Status status = check_whole(parts, output.target()); !status) return status;
     Result<FinishedPart> surfels = simplify_whole(parts, *options.simplify, clock, report);
-    if (!surfels) return fail(std::move(surfels.error()));
+    if (!surfels) return fail(surfels);
     simplified = std::move(*surfels);
     take_properties(simplified->cloud, common);
   }
   model::ModelSchema schema = model::schema_of(common);
   schema.even = !options.simplify && is_even(inputs, options.radii);
   const Result<model::ModelWriter*> writer = output.writer(std::move(schema));
-  if (!writer) return fail(writer.error());
+  if (!writer) return fail(writer);
   (*writer)->set_georeference(report.georeference);
   ModelPass pass(parts, **writer, options, std::move(simplified));
   if (Status status = pass.write_parts(memory, clock); !status) return status;
@@ -154,14 +154,14 @@ Status build_surfels(std::span<const std::filesystem::path> inputs, ModelOutput&
   const OpenInput open = opener(options, target, report);
   Result<BuildInputs> opened = BuildInputs::open(inputs, open, options.z_up, report.memory_budget, options.sample,
                                                  [&clock](double) { clock.step(); });
-  if (!opened) return fail(opened.error());
+  if (!opened) return fail(opened);
   Result<Placement> placement = opened->place(options.systems);
-  if (!placement) return fail(placement.error().kind, target.string() + ": " + placement.error().message);
+  if (!placement) return fail_about(target.string(), placement);
   report.points_in_scans = opened->size_of_files();
   clock.know_points(opened->size());
   if (Status status = check_bounds(opened->bounds(), target); !status) return status;
   Result<MemoryPlan> memory = plan_memory(report.memory_budget, opened->held_bytes(), opened->schema());
-  if (!memory) return fail(memory.error().kind, target.string() + ": " + memory.error().message);
+  if (!memory) return fail_about(target.string(), memory);
   if (options.part_points) memory->split_into(*options.part_points);
   report.scan.notes = opened->notes();
   report.scan.notes.insert(report.scan.notes.end(), placement->notes.begin(), placement->notes.end());
@@ -171,7 +171,7 @@ Status build_surfels(std::span<const std::filesystem::path> inputs, ModelOutput&
     for (const std::string& note : mesh.report.notes) report.scan.notes.push_back(mesh.input + ": " + note);
   }
   Result<BuildParts> parts = BuildParts::gather(*opened, {*memory, options.parts}, target, clock, report.scan);
-  if (!parts) return fail(std::move(parts.error()));
+  if (!parts) return fail(parts);
   report.parts += parts->size();
   Status made = parts->make_surfels(*memory, options.radii, clock, report.scan);
   if (!made) return made;
@@ -226,7 +226,7 @@ InputsByKind by_kind(std::span<const std::filesystem::path> inputs, const BuildO
 /// Finds errors of the headers of what is read last before anything is worked on.
 Status check_headers(const InputsByKind& inputs) {
   for (const std::filesystem::path& grid : inputs.grids) {
-    if (const Result<GridInput> opened = GridInput::open(grid); !opened) return fail(opened.error());
+    if (const Result<GridInput> opened = GridInput::open(grid); !opened) return fail(opened);
   }
   return {};
 }
@@ -254,7 +254,7 @@ Status build_kinds(const InputsByKind& inputs, ModelOutput& output, const BuildO
   }
   if (!status) return status;
   const Result<model::WriteReport> written = output.finish();
-  if (!written) return fail(written.error());
+  if (!written) return fail(written);
   report.surfels = written->surfels;
   report.blocks = written->blocks;
   report.bytes = written->bytes;
@@ -267,15 +267,15 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
                                 const BuildOptions& options, const BuildProgress& progress) {
   const Stopwatch stopwatch;
   BuildReport report;
-  if (Status status = check_target(target, inputs); !status) return fail(std::move(status.error()));
+  if (Status status = check_target(target, inputs); !status) return fail(status);
   const Result<uint64_t> budget = memory_budget(options.memory);
-  if (!budget) return fail(budget.error().kind, target.string() + ": " + budget.error().message);
+  if (!budget) return fail_about(target.string(), budget);
   report.memory_budget = *budget;
   ModelOutput output(target);
   {
     StageClock clock(progress, report);
     Status status = build_kinds(by_kind(inputs, options, *budget), output, options, clock, report);
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
   }
   report.seconds = stopwatch.seconds();
   report.peak_memory = peak_resident_bytes();

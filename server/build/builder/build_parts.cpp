@@ -72,11 +72,11 @@ Result<BuildParts> BuildParts::gather(const BuildInputs& inputs, const Division&
                                       estimation::SurfelReport& report) {
   const geometry::RootCube root = geometry::root_cube(inputs.bounds());
   Result<std::vector<Part>> parts = divide_points(inputs, root, division, clock, {});
-  if (!parts) return fail(std::move(parts.error()));
+  if (!parts) return fail(parts);
   BuildParts build(inputs, std::move(*parts));
   Status status =
       build.size() == 1 ? build.collect(inputs, clock, report) : build.spool(inputs, division, target, clock, report);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return build;
 }
 
@@ -89,7 +89,7 @@ Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, estimat
   Status status = work_in_order(inputs.pieces(), threads(), [&](size_t i) -> Result<std::function<Status()>> {
     estimation::SurfelReport own;
     Result<InputPiece> piece = inputs.read(i, own);
-    if (!piece) return fail(std::move(piece.error()));
+    if (!piece) return fail(piece);
     return [&, own, shared = std::make_shared<InputPiece>(std::move(*piece))] {
       report.add(own);
       copy_points(shared->points, points.own, points.cloud);
@@ -110,7 +110,7 @@ Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, estimat
 Status BuildParts::spool(const BuildInputs& inputs, const Division& division, const std::filesystem::path& target,
                          StageClock& clock, estimation::SurfelReport& report) {
   Result<SpoolFile> file = SpoolFile::create(target);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   store_.emplace(std::move(*file), inputs.schema(), frame_->names, size());
   Status status = distribute_points(inputs, numbers_below(inputs.pieces()), frame_->finder, frame_->root, {}, *store_,
                                     clock, report);
@@ -134,7 +134,7 @@ Status BuildParts::make_surfels(const MemoryPlan& memory, estimation::RadiusPoli
   SceneEvidence evidence(frame_->names.size());
   Status status = work_in_order(size(), parts_at_once(memory), [&](size_t part) -> Result<std::function<Status()>> {
     Result<PartPoints> points = store_ ? store_->load(part) : Result<PartPoints>(std::move(*whole_));
-    if (!points) return fail(std::move(points.error()));
+    if (!points) return fail(points);
     const auto made =
         std::make_shared<MadePart>(make_part(*frame_, std::move(*points), part, radii, store_.has_value()));
     return [&, part, made] {
@@ -161,9 +161,9 @@ Result<FinishedPart> BuildParts::take(size_t part) {
     return FinishedPart{std::move(surfels_.cloud), own_};
   }
   Result<PartPoints> points = store_->load(part);
-  if (!points) return fail(std::move(points.error()));
+  if (!points) return fail(points);
   Result<PartFindings> findings = store_->load_findings(part);
-  if (!findings) return fail(std::move(findings.error()));
+  if (!findings) return fail(findings);
   reorder(points->cloud, findings->order);
   store_->release(part);
   const std::vector<uint8_t>& kept = findings->kept;

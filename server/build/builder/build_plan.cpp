@@ -334,7 +334,7 @@ std::vector<Part> BuildPlan::divided() const {
 
 Result<InputIdentity> identity_of(const std::filesystem::path& path) {
   Result<std::vector<std::filesystem::path>> files = files_of_input(path);
-  if (!files) return fail(std::move(files.error()));
+  if (!files) return fail(files);
   InputIdentity identity;
   identity.files = files->size();
   identity.modified = std::numeric_limits<int64_t>::min();  // the clock of file systems may begin in the future

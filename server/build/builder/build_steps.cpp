@@ -49,9 +49,9 @@ Status check_kind(const fs::path& input) {
 Result<std::vector<PlannedInput>> name_inputs(std::span<const fs::path> inputs) {
   std::vector<PlannedInput> named;
   for (const fs::path& input : inputs) {
-    if (Status status = check_kind(input); !status) return fail(std::move(status.error()));
+    if (Status status = check_kind(input); !status) return fail(status);
     const Result<InputIdentity> identity = identity_of(input);
-    if (!identity) return fail(identity.error());
+    if (!identity) return fail(identity);
     named.push_back({fs::absolute(input).lexically_normal(), *identity, {}});
   }
   return named;
@@ -85,7 +85,7 @@ Status read_pieces(const BuildInputs& inputs, PieceSurvey& survey, StageClock& c
   return work_in_order(inputs.pieces(), threads, [&](size_t i) -> Result<std::function<Status()>> {
     estimation::SurfelReport report;
     const Result<InputPiece> piece = inputs.read(i, report);
-    if (!piece) return fail(piece.error());
+    if (!piece) return fail(piece);
     survey.see(i, *piece, report);
     clock.step();
     return [] { return Status(); };
@@ -100,7 +100,7 @@ Status divide(const BuildInputs& inputs, const Division& division, StageClock& c
     survey.see(piece, read, report);
   };
   const Result<std::vector<Part>> parts = divide_points(inputs, root, division, clock, see);
-  if (!parts) return fail(parts.error());
+  if (!parts) return fail(parts);
   if (parts->size() == 1) {
     if (Status status = read_pieces(inputs, survey, clock); !status) return status;
   }
@@ -118,7 +118,7 @@ Status divide(const BuildInputs& inputs, const Division& division, StageClock& c
 
 Result<MemoryPlan> memory_of(const BuildInputs& inputs, uint64_t budget, const fs::path& folder) {
   Result<MemoryPlan> memory = plan_memory(budget, inputs.held_bytes(), inputs.schema());
-  if (!memory) return fail(memory.error().kind, folder.string() + ": " + memory.error().message);
+  if (!memory) return fail_about(folder.string(), memory);
   return memory;
 }
 
@@ -131,7 +131,7 @@ std::vector<fs::path> paths_of(const std::vector<PlannedInput>& inputs) {
 
 Status write_plan_files(const fs::path& folder, BuildPlan& plan) {
   const Result<std::string> text = write_plan(plan);
-  if (!text) return fail(text.error().kind, folder.string() + ": " + text.error().message);
+  if (!text) return fail_about(folder.string(), text);
   // Who finds the plan finds the number of its parts, too.
   Status status = write_file_atomically(part_count_file(folder), std::to_string(plan.parts.size()) + "\n");
   return status ? write_file_atomically(plan_file(folder), *text) : status;
@@ -169,18 +169,18 @@ Result<PlanOutcome> make_plan(BuildPlan plan, const fs::path& folder, StageClock
   };
   Result<BuildInputs> opened =
       BuildInputs::open(paths, open, request.z_up, request.memory, {}, [&clock](double) { clock.step(); });
-  if (!opened) return fail(std::move(opened.error()));
+  if (!opened) return fail(opened);
   Result<Placement> placement = opened->place(request.systems);
-  if (!placement) return fail(placement.error().kind, folder.string() + ": " + placement.error().message);
-  if (Status status = check_bounds(opened->bounds(), folder); !status) return fail(std::move(status.error()));
+  if (!placement) return fail_about(folder.string(), placement);
+  if (Status status = check_bounds(opened->bounds(), folder); !status) return fail(status);
   const Result<MemoryPlan> memory = memory_of(*opened, request.memory, folder);
-  if (!memory) return fail(memory.error());
+  if (!memory) return fail(memory);
   clock.know_points(opened->size());
   for (size_t i = 0; i < paths.size(); ++i) plan.inputs[i].facts = opened->facts()[i];
   if (Status status = divide(*opened, {*memory, request.parts}, clock, plan); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
-  if (Status status = write_plan_files(folder, plan); !status) return fail(std::move(status.error()));
+  if (Status status = write_plan_files(folder, plan); !status) return fail(status);
   PlanOutcome outcome = outcome_of(plan);
   outcome.notes = opened->notes();
   outcome.notes.insert(outcome.notes.end(), placement->notes.begin(), placement->notes.end());
@@ -209,7 +209,7 @@ Status check_unchanged(const BuildPlan& plan, const std::vector<bool>& needed, c
     if (!needed[i]) continue;
     const PlannedInput& input = plan.inputs[i];
     const Result<InputIdentity> identity = identity_of(input.path);
-    if (!identity) return fail(identity.error());
+    if (!identity) return fail(identity);
     if (*identity == input.identity) continue;
     return fail(ErrorKind::kReplaced, input.path.string() + ": has changed since it was planned with; run `surfcastd " +
                                           "build-plan INPUT... --work " + folder.string() + "` again");
@@ -221,7 +221,7 @@ Status check_unchanged(const BuildPlan& plan, const std::vector<bool>& needed, c
 template <typename Write>
 Status write_result(const WorkFolder& folder, WorkStep step, size_t part, const Write& write) {
   Result<WorkFileWriter> file = folder.create(step, part);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   const Status status = write(*file);
   return status ? file->finish() : status;
 }
@@ -231,14 +231,14 @@ Result<PartPoints> gather_part(const BuildInputs& inputs, const BuildFrame& fram
                                size_t part, StageClock& clock) {
   const fs::path target = folder.file(WorkStep::kPart, part);
   Result<SpoolFile> spool = SpoolFile::create(target);
-  if (!spool) return fail(std::move(spool.error()));
+  if (!spool) return fail(spool);
   PartStore store(std::move(*spool), inputs.schema(), frame.names, frame.parts.size());
   estimation::SurfelReport counted_before;
   Status status = distribute_points(inputs, folder.plan().pieces_of(part), frame.finder, frame.root,
                                     static_cast<uint32_t>(part), store, clock, counted_before);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   const Result<MemoryPlan> memory = memory_of(inputs, folder.plan().request.memory, target);
-  if (!memory) return fail(memory.error());
+  if (!memory) return fail(memory);
   if (const uint64_t points = store.points(part); points > 0 && memory->parts_at_once(points) == 0) {
     return fail(ErrorKind::kLimit, target.string() + ": " + std::to_string(points) +
                                        " points are more than the memory of the plan holds; plan with more parts or "
@@ -254,9 +254,9 @@ Result<SceneEvidence> evidence_of(const WorkFolder& folder, size_t inputs, Stage
   SceneEvidence evidence(inputs);
   for (size_t part = 0; part < folder.parts(); ++part) {
     const Result<WorkFile> file = folder.result(WorkStep::kPart, part);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     Result<PartEvidence> own = read_evidence(*file);
-    if (!own) return fail(std::move(own.error()));
+    if (!own) return fail(own);
     evidence.add(std::move(own->signs), own->radii, own->samples);
     report.add(own->report);
     clock.step();
@@ -285,15 +285,15 @@ Result<SceneResult> scene_of(const WorkFile& signs, const WorkFolder& folder, si
 Result<FinishedPart> finish_part(const WorkFolder& folder, size_t part, const BuildInputs& inputs,
                                  const BuildFrame& frame) {
   const Result<WorkFile> file = folder.result(WorkStep::kPart, part);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const Result<WorkFile> signs = folder.result(WorkStep::kSigns);
-  if (!signs) return fail(signs.error());
+  if (!signs) return fail(signs);
   const Result<SceneResult> scene = scene_of(*signs, folder, frame.names.size());
-  if (!scene) return fail(scene.error());
+  if (!scene) return fail(scene);
   Result<std::vector<estimation::SurfaceSample>> samples = read_samples(*signs);
-  if (!samples) return fail(std::move(samples.error()));
+  if (!samples) return fail(samples);
   Result<MadePart> made = read_surfels(*file, inputs.schema(), frame.names);
-  if (!made) return fail(std::move(made.error()));
+  if (!made) return fail(made);
   const estimation::SurfaceSpacing spacing(std::move(*samples), frame.bounds);
   settle_surfels(scene->decisions, spacing, part, made->inputs, made->surfels);
   return FinishedPart{std::move(made->surfels.cloud), made->own};
@@ -306,9 +306,9 @@ class PartMerger {
 
   Status add_part(size_t part) {
     const Result<WorkFile> file = folder_.result(WorkStep::kBlocks, part);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     Result<StoredPart> stored = read_part_blocks(*file);
-    if (!stored) return fail(std::move(stored.error()));
+    if (!stored) return fail(stored);
     for (size_t i = 0; i < stored->blocks.size(); ++i) {
       if (Status status = add_block(*file, i, stored->blocks[i]); !status) return status;
     }
@@ -330,11 +330,11 @@ class PartMerger {
  private:
   Status add_block(const WorkFile& file, size_t number, StoredPartBlock& stored) {
     Result<std::vector<std::byte>> bytes = file.read(number);
-    if (!bytes) return fail(std::move(bytes.error()));
+    if (!bytes) return fail(bytes);
     stored.block.bytes = std::move(*bytes);
     for (uint32_t& child : stored.children) child += first_;
     const Result<uint32_t> added = writer_.add(stored.block, stored.key, stored.children);
-    if (!added) return fail(added.error());
+    if (!added) return fail(added);
     stored = {};
     return {};
   }
@@ -351,17 +351,17 @@ Result<model::WriteReport> write_model_of(const WorkFolder& folder, const BuildI
   model::ModelSchema schema = model::schema_of(common);
   schema.even = is_even(inputs, folder.plan().request.radii);
   Result<model::ModelWriter> writer = model::ModelWriter::create(target, std::move(schema));
-  if (!writer) return fail(std::move(writer.error()));
+  if (!writer) return fail(writer);
   writer->set_georeference(inputs.georeference());
   PartMerger merger(folder, *writer);
   clock.begin("writing blocks", folder.parts());
   for (size_t part = 0; part < folder.parts(); ++part) {
-    if (Status status = merger.add_part(part); !status) return fail(std::move(status.error()));
+    if (Status status = merger.add_part(part); !status) return fail(status);
     clock.step();
   }
   clock.begin("writing levels above", 1);
   const geometry::RootCube root = geometry::root_cube(inputs.bounds());
-  if (Status status = merger.add_levels_above(root, common); !status) return fail(std::move(status.error()));
+  if (Status status = merger.add_levels_above(root, common); !status) return fail(status);
   return writer->finish();
 }
 
@@ -395,7 +395,7 @@ Status note_merged(const WorkFolder& folder, const fs::path& target) {
 Result<PlanOutcome> plan_build(std::span<const fs::path> inputs, const fs::path& folder, const PlanRequest& request,
                                const BuildProgress& progress) {
   Result<std::vector<PlannedInput>> named = name_inputs(inputs);
-  if (!named) return fail(std::move(named.error()));
+  if (!named) return fail(named);
   std::error_code code;
   fs::create_directories(folder, code);
   if (code) return fail(ErrorKind::kIo, folder.string() + ": cannot make this folder: " + code.message());
@@ -409,87 +409,87 @@ Result<PlanOutcome> plan_build(std::span<const fs::path> inputs, const fs::path&
 
 Result<PartOutcome> build_part(const WorkPlace& work, size_t part, const BuildProgress& progress) {
   const Result<WorkFolder> folder = WorkFolder::open(work.folder, work.program);
-  if (!folder) return fail(folder.error());
+  if (!folder) return fail(folder);
   const Result<size_t> index = folder->index_of(part);
-  if (!index) return fail(index.error());
+  if (!index) return fail(index);
   if (folder->is_done(WorkStep::kPart, *index)) return PartOutcome{true, 0, 0};
   const BuildPlan& plan = folder->plan();
   const std::vector<bool> needed = plan.inputs_of(*index);
-  if (Status status = check_unchanged(plan, needed, work.folder); !status) return fail(std::move(status.error()));
+  if (Status status = check_unchanged(plan, needed, work.folder); !status) return fail(status);
   const Result<BuildInputs> inputs = reopen_inputs(plan, needed);
-  if (!inputs) return fail(inputs.error());
+  if (!inputs) return fail(inputs);
   StepClock clock(progress);
   (*clock).know_points(plan.parts[*index].part.count);
   const BuildFrame frame(*inputs, plan.divided());
   Result<PartPoints> points = gather_part(*inputs, frame, *folder, *index, *clock);
-  if (!points) return fail(std::move(points.error()));
+  if (!points) return fail(points);
   (*clock).begin("making surfels", 1);
   MadePart made = make_part(frame, std::move(*points), *index, plan.request.radii, false);
   const Status status =
       write_result(*folder, WorkStep::kPart, *index, [&made](WorkFileWriter& file) { return write_part(file, made); });
-  if (!status) return fail(status.error());
+  if (!status) return fail(status);
   return PartOutcome{false, made.own, made.surfels.cloud.size() - made.own};
 }
 
 Result<SignsOutcome> build_signs(const WorkPlace& work, const BuildProgress& progress) {
   const Result<WorkFolder> folder = WorkFolder::open(work.folder, work.program);
-  if (!folder) return fail(folder.error());
+  if (!folder) return fail(folder);
   if (folder->is_done(WorkStep::kSigns)) return SignsOutcome{true, false, {}, {}};
-  if (Status status = folder->check_all(WorkStep::kPart); !status) return fail(std::move(status.error()));
+  if (Status status = folder->check_all(WorkStep::kPart); !status) return fail(status);
   const Result<BuildInputs> inputs = describe_inputs(folder->plan());
-  if (!inputs) return fail(inputs.error());
+  if (!inputs) return fail(inputs);
   StepClock clock(progress);
   const BuildFrame frame(*inputs, folder->plan().divided());
   SceneResult scene;
   Result<SceneEvidence> evidence = evidence_of(*folder, frame.names.size(), *clock, scene.report);
-  if (!evidence) return fail(std::move(evidence.error()));
+  if (!evidence) return fail(evidence);
   scene.decisions = evidence->decide(frame, folder->plan().request.radii, scene.report);
   const std::vector<estimation::SurfaceSample> samples = std::move(*evidence).take_samples();
   const Status status = write_result(*folder, WorkStep::kSigns, 0,
                                      [&](WorkFileWriter& file) { return write_scene(file, scene, samples); });
-  if (!status) return fail(status.error());
+  if (!status) return fail(status);
   return outcome_of(scene, *inputs, folder->plan().request.radii);
 }
 
 Result<BlocksOutcome> build_part_blocks(const WorkPlace& work, size_t part, const BuildProgress& progress) {
   const Result<WorkFolder> folder = WorkFolder::open(work.folder, work.program);
-  if (!folder) return fail(folder.error());
+  if (!folder) return fail(folder);
   const Result<size_t> index = folder->index_of(part);
-  if (!index) return fail(index.error());
+  if (!index) return fail(index);
   if (folder->is_done(WorkStep::kBlocks, *index)) return BlocksOutcome{true, 0, 0};
   const Result<BuildInputs> inputs = describe_inputs(folder->plan());
-  if (!inputs) return fail(inputs.error());
+  if (!inputs) return fail(inputs);
   StepClock clock(progress);
   (*clock).begin("writing blocks", 1);
   const BuildFrame frame(*inputs, folder->plan().divided());
   Result<FinishedPart> finished = finish_part(*folder, *index, *inputs, frame);
-  if (!finished) return fail(std::move(finished.error()));
+  if (!finished) return fail(finished);
   const size_t own = finished->own;
   const PartBlocks made =
       make_part_blocks(std::move(*finished), frame.parts[*index], frame.root, folder->plan().request.precision);
   const Status status = write_result(*folder, WorkStep::kBlocks, *index,
                                      [&made](WorkFileWriter& file) { return write_part_blocks(file, made); });
-  if (!status) return fail(status.error());
+  if (!status) return fail(status);
   return BlocksOutcome{false, made.subtree.blocks.size(), own};
 }
 
 Result<MergeOutcome> merge_parts(const WorkPlace& work, const fs::path& target, const BuildProgress& progress) {
   const Result<WorkFolder> folder = WorkFolder::open(work.folder, work.program);
-  if (!folder) return fail(folder.error());
+  if (!folder) return fail(folder);
   const BuildPlan& plan = folder->plan();
-  if (Status status = check_target(target, paths_of(plan.inputs)); !status) return fail(std::move(status.error()));
+  if (Status status = check_target(target, paths_of(plan.inputs)); !status) return fail(status);
   if (is_merged(*folder, target)) return MergeOutcome{true, 0, 0, 0, 0};
-  if (Status status = folder->check_all(WorkStep::kBlocks); !status) return fail(std::move(status.error()));
+  if (Status status = folder->check_all(WorkStep::kBlocks); !status) return fail(status);
   const Result<BuildInputs> inputs = describe_inputs(plan);
-  if (!inputs) return fail(inputs.error());
+  if (!inputs) return fail(inputs);
   const Result<WorkFile> signs = folder->result(WorkStep::kSigns);
-  if (!signs) return fail(signs.error());
+  if (!signs) return fail(signs);
   const Result<SceneResult> scene = scene_of(*signs, *folder, inputs->schemas().size());
-  if (!scene) return fail(scene.error());
+  if (!scene) return fail(scene);
   StepClock clock(progress);
   const Result<model::WriteReport> written = write_model_of(*folder, *inputs, *scene, target, *clock);
-  if (!written) return fail(written.error());
-  if (Status status = note_merged(*folder, target); !status) return fail(std::move(status.error()));
+  if (!written) return fail(written);
+  if (Status status = note_merged(*folder, target); !status) return fail(status);
   return MergeOutcome{false, plan.report.points_read, written->surfels, written->blocks, written->bytes};
 }
 

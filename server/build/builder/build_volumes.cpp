@@ -31,7 +31,7 @@ Result<std::vector<GridInput>> open_all(std::span<const std::filesystem::path> p
   std::vector<GridInput> inputs;
   for (const std::filesystem::path& path : paths) {
     Result<GridInput> input = GridInput::open(path, sample);
-    if (!input) return fail(std::move(input.error()));
+    if (!input) return fail(input);
     inputs.push_back(std::move(*input));
   }
   return inputs;
@@ -69,7 +69,7 @@ Status add_fields(std::span<const std::filesystem::path> paths, const std::files
   for (const std::filesystem::path& path : paths) {
     Result<GridInput> input =
         open_field(path, *options.field, target, report.memory_budget, options.sample, report.fields);
-    if (!input) return fail(std::move(input.error()));
+    if (!input) return fail(input);
     inputs.push_back(std::move(*input));
     clock.step();
   }
@@ -81,7 +81,7 @@ Status add_fields(std::span<const std::filesystem::path> paths, const std::files
 Status build_volumes(std::span<const std::filesystem::path> grids, std::span<const std::filesystem::path> fields,
                      ModelOutput& output, const BuildOptions& options, StageClock& clock, BuildReport& report) {
   Result<std::vector<GridInput>> inputs = open_all(grids, options.sample);
-  if (!inputs) return fail(std::move(inputs.error()));
+  if (!inputs) return fail(inputs);
   if (Status status = add_fields(fields, output.target(), options, clock, report, *inputs); !status) return status;
   if (Status status = check_memory(*inputs, output.target(), report.memory_budget); !status) return status;
   for (const GridInput& input : *inputs) {
@@ -91,7 +91,7 @@ Status build_volumes(std::span<const std::filesystem::path> grids, std::span<con
   clock.know_points(report.samples);
   if (Status status = measure_all(*inputs, clock, report); !status) return status;
   const Result<model::ModelWriter*> writer = output.writer(schema_of(*inputs, options));
-  if (!writer) return fail(writer.error());
+  if (!writer) return fail(writer);
   clock.begin("writing bricks", planes_of(*inputs));
   std::vector<model::Volume> volumes;
   for (GridInput& input : *inputs) {

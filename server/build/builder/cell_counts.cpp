@@ -63,7 +63,7 @@ Result<std::vector<CountedCell>> count_cells(const CodePass& pass, uint64_t limi
     const int levels = std::min(depth == 0 ? kFirstDepth : kMoreDepth, geometry::kMortonDepth - depth);
     CountingGrid grid(std::exchange(overfull, {}), depth, levels);
     if (Status status = pass([&grid](std::span<const uint64_t> codes) { grid.count(codes); }); !status) {
-      return fail(std::move(status.error()));
+      return fail(status);
     }
     depth += levels;
     for (const CountedCell& cell : grid.cells()) {

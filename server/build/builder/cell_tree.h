@@ -48,7 +48,7 @@ class CellTree {
   Status write() {
     std::vector<Leaf> leaves;
     const Result<Cell> all = take_cell({}, leaves);
-    if (!all) return fail(all.error());
+    if (!all) return fail(all);
     Cell blocks;
     return write_leaves(std::move(leaves), blocks);
   }
@@ -96,14 +96,14 @@ class CellTree {
       if (low == high) return low;
       const size_t middle = (low + high) / 2;
       const Result<std::optional<uint64_t>> code = kind_.code(middle);
-      if (!code) return fail(code.error());
+      if (!code) return fail(code);
       (*code && belongs(**code) ? low : high) = *code && belongs(**code) ? middle + 1 : middle;
     }
   }
 
   Status take_leaf(const ldc::OctreeKey& key, size_t size, std::vector<Leaf>& leaves) {
     Result<Items> items = kind_.take(size);
-    if (!items) return fail(std::move(items.error()));
+    if (!items) return fail(items);
     leaves.push_back({key, std::move(*items)});
     step_(size);
     return {};
@@ -114,10 +114,10 @@ class CellTree {
     const bool divisible = key.depth < ldc::OctreeKey::kMaxDepth;
     while (true) {
       const Result<size_t> size = count(key);
-      if (!size) return fail(size.error());
+      if (!size) return fail(size);
       if (*size == 0) return Cell();
       if (*size > kMaxItems && divisible) return divide(key, leaves);
-      if (Status taken = take_leaf(key, std::min(*size, kMaxItems), leaves); !taken) return fail(taken.error());
+      if (Status taken = take_leaf(key, std::min(*size, kMaxItems), leaves); !taken) return fail(taken);
     }
   }
 
@@ -140,7 +140,7 @@ class CellTree {
 
   Result<Cell> write_coarse(const ldc::OctreeKey& key, std::vector<Leaf> leaves, std::vector<Cell> cells) {
     Cell below;
-    if (Status status = write_leaves(join_small(std::move(leaves), key), below); !status) return fail(status.error());
+    if (Status status = write_leaves(join_small(std::move(leaves), key), below); !status) return fail(status);
     for (Cell& cell : cells) {
       kind_.append_all(cell.items, below.items);
       below.blocks.insert(below.blocks.end(), cell.blocks.begin(), cell.blocks.end());
@@ -153,7 +153,7 @@ class CellTree {
     block.spacing = std::max(sampled, kMinCoarsening * below.spacing);
     block.max_radius = std::max(block.max_radius, block.spacing);
     const Result<uint32_t> number = writer_.add(block, key, below.blocks);
-    if (!number) return fail(number.error());
+    if (!number) return fail(number);
     return Cell{std::move(merged.items), {*number}, block.spacing};
   }
 
@@ -164,7 +164,7 @@ class CellTree {
                               [&](size_t i) { blocks[i] = kind_.encode(leaves[i].items, false); });
     for (size_t i = 0; i < leaves.size(); ++i) {
       const Result<uint32_t> number = writer_.add(blocks[i], leaves[i].key, {});
-      if (!number) return fail(number.error());
+      if (!number) return fail(number);
       kind_.append_all(leaves[i].items, cell.items);
       cell.blocks.push_back(*number);
       cell.spacing = std::max(cell.spacing, blocks[i].spacing);

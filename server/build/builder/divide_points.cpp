@@ -49,7 +49,7 @@ Result<std::vector<CountedCell>> count_points(const BuildInputs& inputs, const g
     return work_in_order(inputs.pieces(), reading_threads(), [&](size_t i) -> Result<std::function<Status()>> {
       estimation::SurfelReport report;
       const Result<InputPiece> piece = inputs.read(i, report);
-      if (!piece) return fail(piece.error());
+      if (!piece) return fail(piece);
       count(codes_of(piece->points, root));
       if (see) see(i, *piece, report);
       clock.step();
@@ -75,7 +75,7 @@ Result<std::vector<Part>> divide_points(const BuildInputs& inputs, const geometr
   }
   const uint64_t limit = division.parts ? points_of_cell(points, *division.parts) : division.memory.part_points;
   const Result<std::vector<CountedCell>> cells = count_points(inputs, root, limit, clock, see);
-  if (!cells) return fail(cells.error());
+  if (!cells) return fail(cells);
   if (!division.parts) return plan_parts(*cells, limit);
   std::vector<Part> parts = plan_part_count(*cells, *division.parts);
   if (parts.size() == *division.parts) return parts;
@@ -91,7 +91,7 @@ Status distribute_points(const BuildInputs& inputs, std::span<const size_t> piec
   return work_in_order(pieces.size(), reading_threads() + 1, [&](size_t i) -> Result<std::function<Status()>> {
     estimation::SurfelReport own;
     const Result<InputPiece> piece = inputs.read(pieces[i], own);
-    if (!piece) return fail(piece.error());
+    if (!piece) return fail(piece);
     const std::vector<PartRows> parts = sort_out(piece->points, finder, root, only);
     return [&, own, packed = std::make_shared<PackedPiece>(pack_piece(*piece, parts))] {
       report.add(own);

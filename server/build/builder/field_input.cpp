@@ -22,7 +22,7 @@ class SpooledSamples final : public stream::ByteStream {
 
   Result<size_t> read(std::span<std::byte> out) override {
     const std::span part = out.first(std::min<uint64_t>(out.size(), at_most()));
-    if (Status status = spool_->read(offset_, part); !status) return fail(std::move(status.error()));
+    if (Status status = spool_->read(offset_, part); !status) return fail(status);
     offset_ += part.size();
     return part.size();
   }
@@ -42,12 +42,12 @@ Result<std::shared_ptr<const SpoolFile>> spool_field(const scattered::FieldPlane
                                                      const scattered::FieldLattice& lattice,
                                                      const std::filesystem::path& target) {
   Result<SpoolFile> spool = SpoolFile::create(target);
-  if (!spool) return fail(std::move(spool.error()));
+  if (!spool) return fail(spool);
   std::vector<float> values;
   for (uint32_t slab = 0; slab < field.slabs(); ++slab) {
     values.resize(size_t{lattice.size.x} * lattice.size.y * field.planes_of(slab));
     field.evaluate(slab, values);
-    if (const auto written = spool->append(std::as_bytes(std::span(values))); !written) return fail(written.error());
+    if (const auto written = spool->append(std::as_bytes(std::span(values))); !written) return fail(written);
   }
   return std::make_shared<const SpoolFile>(std::move(*spool));
 }
@@ -68,12 +68,12 @@ Result<GridInput> sample_field(const scan::ScanStream& scan, const std::filesyst
                                const scattered::FieldOptions& options, const std::filesystem::path& target,
                                uint64_t memory, std::optional<uint64_t> sample, InputField& found) {
   Result<scattered::Samples> samples = scattered::read_samples(scan, path, options, memory);
-  if (!samples) return fail(std::move(samples.error()));
+  if (!samples) return fail(samples);
   const Result<scattered::FieldLattice> lattice =
       sample
           ? scattered::plan_lattice(*samples, options.combination, {}, *sample)
           : scattered::plan_lattice(*samples, options.combination, options.resolution, scattered::kMaxLatticeSamples);
-  if (!lattice) return fail(lattice.error().kind, path.string() + ": " + lattice.error().message);
+  if (!lattice) return fail_about(path.string(), lattice);
   if (const uint64_t bytes = scattered::FieldPlanes::bytes_for(*lattice); bytes > memory) {
     return fail(ErrorKind::kLimit, path.string() + ": a volume of " + std::to_string(lattice->samples()) +
                                        " samples takes " + std::to_string(bytes >> 20U) +
@@ -86,9 +86,9 @@ Result<GridInput> sample_field(const scan::ScanStream& scan, const std::filesyst
   found.widened = scattered::widen_to_lattice(*lattice, keeps_integral, *samples);
   const scattered::FieldPlanes field(*samples, *lattice, combining_of(options, *samples));
   auto spool = spool_field(field, *lattice, target);
-  if (!spool) return fail(std::move(spool.error()));
+  if (!spool) return fail(spool);
   auto reader = grid::GridReader::of(path, stored(*lattice, std::move(*spool)));
-  if (!reader) return fail(std::move(reader.error()));
+  if (!reader) return fail(reader);
   return GridInput::of(path, std::move(*reader), {});
 }
 
@@ -103,7 +103,7 @@ Result<GridInput> open_field(const std::filesystem::path& path, const scattered:
                              const std::filesystem::path& target, uint64_t memory, std::optional<uint64_t> sample,
                              std::vector<InputField>& report) {
   const Result<scan::ScanStream> scan = grid::open_scan(path, {memory});
-  if (!scan) return fail(scan.error());
+  if (!scan) return fail(scan);
   InputField found{scan->schema().name};
   const uint64_t left = memory - std::min(memory, scan->held_bytes());
   Result<GridInput> input = sample_field(*scan, path, options, target, left, sample, found);

@@ -61,7 +61,7 @@ Result<FormerModel> former_model(const model::ModelFile& model, std::span<const 
   FormerModel former;
   for (const uint32_t leaf : leaves) {
     const Result<model::StoredBlock> stored = model.stored(leaf);
-    if (!stored) return fail(stored.error());
+    if (!stored) return fail(stored);
     const auto flags = model::BlockFlags::of_byte(static_cast<uint8_t>(stored->bytes.front()));
     former.stated_normals = former.stated_normals || flags.source_normals;
     former.stated_radii = former.stated_radii || flags.source_radii;

@@ -72,7 +72,7 @@ Status GridInput::failed(ErrorKind kind, const std::string& what) const {
 
 Result<GridInput> GridInput::open(const std::filesystem::path& path, std::optional<uint64_t> sample) {
   Result<grid::GridReader> reader = grid::GridReader::open(path);
-  if (!reader) return fail(std::move(reader.error()));
+  if (!reader) return fail(reader);
   return of(path, std::move(*reader), sample);
 }
 

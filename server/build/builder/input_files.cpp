@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "builder/build_gaussians.h"
 #include "builder/grid_input.h"
 #include "builder/mesh_input.h"
@@ -34,7 +34,7 @@ fs::path first_file(const fs::path& path) {
 
 Result<gaussian::SogMeta> read_description(const fs::path& path) {
   const Result<stream::FilePtr> file = stream::open_shared(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   return gaussian::parse_sog_meta(scan::as_text((*file)->bytes())).map_error([&](const Error& error) {
     return Error{error.kind, path.string() + ": " + error.message};
   });
@@ -62,7 +62,7 @@ Result<Files> files_of_gaussians(const fs::path& path) {
   Files files{first_file(path)};
   if (!is_description(files.front())) return files;
   const Result<gaussian::SogMeta> meta = read_description(files.front());
-  if (!meta) return fail(meta.error());
+  if (!meta) return fail(meta);
   const fs::path folder = files.front().parent_path();
   for (const std::string& name : gaussian::picture_names(*meta)) files.push_back(folder / name);
   return files;
@@ -70,7 +70,7 @@ Result<Files> files_of_gaussians(const fs::path& path) {
 
 Result<Files> files_of_grid(const fs::path& path) {
   const Result<grid::GridReader> reader = grid::GridReader::open(path);
-  if (!reader) return fail(reader.error());
+  if (!reader) return fail(reader);
   Files files{path};
   for (fs::path& file : reader->data_files()) files.push_back(std::move(file));
   return files;

@@ -76,9 +76,9 @@ Result<scan::ScanStream> open_mesh(const std::filesystem::path& path, const Mesh
   const std::optional<mesh::MeshFormat> format = mesh::mesh_format_of(path, options.faces);
   if (!format) return fail(ErrorKind::kInvalidInput, path.string() + ": is no mesh");
   const Result<mesh::Mesh> mesh = mesh::read_mesh(path, *format, half_of(limit));
-  if (!mesh) return fail(mesh.error());
+  if (!mesh) return fail(mesh);
   Result<SpoolFile> file = SpoolFile::create(target);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   const mesh::SampleOptions sampling{options.spacing, std::min(options.most_surfels, sample.value_or(UINT64_MAX))};
   const Columns columns{mesh->colored(), blends(*mesh)};
   std::vector<std::byte> bytes;
@@ -88,7 +88,7 @@ Result<scan::ScanStream> open_mesh(const std::filesystem::path& path, const Mesh
         for (const mesh::MeshSurfel& surfel : surfels) put_surfel(surfel, columns, bytes);
         return file->append(bytes).map([](uint64_t) {});
       });
-  if (!report) return fail(report.error().kind, path.string() + ": " + report.error().message);
+  if (!report) return fail_about(path.string(), report);
   if (report->surfels == 0) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": none of its triangles has an area that can be seen");
   }

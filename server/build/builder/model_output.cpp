@@ -10,7 +10,7 @@ Result<model::ModelWriter*> ModelOutput::writer(model::ModelSchema schema) {
     return &*writer_;
   }
   Result<model::ModelWriter> created = model::ModelWriter::create(target_, std::move(schema));
-  if (!created) return fail(std::move(created.error()));
+  if (!created) return fail(created);
   writer_.emplace(std::move(*created));
   return &*writer_;
 }

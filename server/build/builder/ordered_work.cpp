@@ -26,7 +26,7 @@ Status work_in_order(size_t count, size_t at_once, const std::function<Result<st
   };
   const auto end = [&](const Finish& finish) {
     if (!status) return;
-    status = finish ? (*finish)() : fail(finish.error());
+    status = finish ? (*finish)() : fail(finish);
     if (!status) failed = true;
   };
   tbb::parallel_pipeline(at_once, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, take) &

@@ -48,7 +48,7 @@ PartStore::PartStore(SpoolFile file, const scan::ScanSchema& schema, std::vector
 
 Status PartStore::add(const PackedPiece& piece) {
   const Result<uint64_t> offset = file_.append(piece.bytes);
-  if (!offset) return fail(offset.error());
+  if (!offset) return fail(offset);
   for (const PackedPiece::Run& run : piece.runs) {
     parts_[run.part].extents.push_back({piece.source, run.own, *offset + run.offset, run.rows});
   }
@@ -72,7 +72,7 @@ Result<PartPoints> PartStore::load(size_t part) const {
   for (const Extent& extent : extents) {
     uint64_t offset = extent.offset;
     for (const std::span<std::byte> column : column_memory(points.cloud, first, extent.rows)) {
-      if (Status status = file_.read(offset, column); !status) return fail(std::move(status.error()));
+      if (Status status = file_.read(offset, column); !status) return fail(status);
       offset += column.size();
     }
     std::vector<surfel::SourceRange>& sources = points.cloud.sources;
@@ -91,7 +91,7 @@ Status PartStore::keep_findings(size_t part, const PartFindings& findings) {
   parts_[part].findings = file_.size();
   return for_each_finding(findings, [this](const auto& values) -> Status {
     const Result<uint64_t> offset = file_.append(std::as_bytes(std::span(values)));
-    return offset ? Status() : fail(offset.error());
+    return offset ? Status() : fail(offset);
   });
 }
 
@@ -106,7 +106,7 @@ Result<PartFindings> PartStore::load_findings(size_t part) const {
     offset += memory.size();
     return read;
   });
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return findings;
 }
 

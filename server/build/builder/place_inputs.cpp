@@ -59,7 +59,7 @@ Status find_moves(std::span<const scan::ScanSchema> inputs, std::span<const geom
   for (size_t i = 0; i < inputs.size(); ++i) {
     if (bounds[i].empty() || crs::are_same(*systems[i], metric)) continue;
     Result<crs::Transformation> move = crs::Transformation::between(*systems[i], metric, bounds[i]);
-    if (!move) return fail(move.error().kind, inputs[i].name + ": " + move.error().message);
+    if (!move) return fail_about(inputs[i].name, move);
     placement.transformed.push_back({inputs[i].name, systems[i]->name, metric.name, move->name(), move->accuracy()});
     placement.moves[i] = std::make_shared<const crs::Transformation>(std::move(*move));
   }
@@ -73,9 +73,9 @@ Result<Placement> place_inputs(std::span<const scan::ScanSchema> inputs, std::sp
   Placement placement;
   placement.moves.resize(inputs.size());
   const Result<MaybeSystem> assigned = system_of_option("--crs", options.assigned);
-  if (!assigned) return fail(assigned.error());
+  if (!assigned) return fail(assigned);
   Result<MaybeSystem> target = system_of_option("--to-crs", options.target);
-  if (!target) return fail(target.error());
+  if (!target) return fail(target);
   std::vector<MaybeSystem> systems = systems_of(inputs, bounds, *assigned, options.overrides_stated, placement.notes);
   size_t first = 0;
   while (first < systems.size() && !systems[first]) ++first;
@@ -86,13 +86,13 @@ Result<Placement> place_inputs(std::span<const scan::ScanSchema> inputs, std::sp
   const crs::CoordinateSystem source = *target ? **target : *systems[first];
   const Result<crs::CoordinateSystem> metric =
       crs::metric_system(source, crs::degrees_of(*systems[first], bounds[first]));
-  if (!metric) return fail(metric.error().kind, inputs[first].name + ": " + metric.error().message);
+  if (!metric) return fail_about(inputs[first].name, metric);
   for (size_t i = 0; i < systems.size(); ++i) {
     if (systems[i]) continue;
     systems[i] = source;
     placement.notes.push_back(inputs[i].name + ": states no coordinate system, taken for " + source.name);
   }
-  if (Status status = find_moves(inputs, bounds, systems, *metric, placement); !status) return fail(status.error());
+  if (Status status = find_moves(inputs, bounds, systems, *metric, placement); !status) return fail(status);
   placement.georeference.system = stored(*metric);
   if (!crs::are_same(source, *metric)) placement.georeference.source = stored(source);
   return placement;

@@ -89,7 +89,7 @@ Result<ellipsoid::Ellipsoids> EllipsoidSorter::take(size_t count) {
       append_bits(bits, ellipsoids.scalars[s].values);
     }
   });
-  if (!status) return fail(status.error());
+  if (!status) return fail(status);
   ellipsoids.counts.assign(count, 1.0F);
   ellipsoids.factors.assign(count, 1.0F);
   return ellipsoids;

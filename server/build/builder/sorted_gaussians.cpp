@@ -49,7 +49,7 @@ Result<gaussian::Gaussians> GaussianSorter::take(size_t count) {
     gaussians.rotations.push_back(record.rotation);
     gaussians.opacities.push_back(record.opacity);
   });
-  if (!status) return fail(status.error());
+  if (!status) return fail(status);
   return gaussians;
 }
 

@@ -60,12 +60,12 @@ void SortedRecords::sort_records() {
 Status SortedRecords::write_run() {
   if (!spool_) {
     Result<SpoolFile> created = SpoolFile::create(target_);
-    if (!created) return fail(std::move(created.error()));
+    if (!created) return fail(created);
     spool_ = std::move(*created);
   }
   sort_records();
   const Result<uint64_t> first = spool_->append(records_);
-  if (!first) return fail(first.error());
+  if (!first) return fail(first);
   runs_.push_back({*first, *first + records_.size(), {}, 0});
   records_.clear();
   return {};
@@ -123,7 +123,7 @@ Status SortedRecords::fetch(size_t count) {
 
 Result<std::optional<uint64_t>> SortedRecords::code(size_t ahead) {
   SURFCAST_EXPECTS(ahead <= kLookAhead);
-  if (Status status = fetch(ahead + 1); !status) return fail(std::move(status.error()));
+  if (Status status = fetch(ahead + 1); !status) return fail(status);
   if (records_.size() / stored_bytes_ - taken_ <= ahead) return std::optional<uint64_t>();
   return std::optional(key_at(stored(taken_ + ahead)).code);
 }

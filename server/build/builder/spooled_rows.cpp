@@ -32,7 +32,7 @@ Result<scan::PointTable> SpooledRows::read(size_t piece) const {
   scan::PointTable table;
   table.rows = static_cast<size_t>(std::min(scan::kPieceRows, rows() - first));
   table.records.resize(table.rows * record_);
-  if (Status status = file_.read(first * record_, table.records); !status) return fail(std::move(status.error()));
+  if (Status status = file_.read(first * record_, table.records); !status) return fail(status);
   const std::byte* at = table.records.data();
   for (const scan::ColumnInfo& column : columns_) {
     table.columns.push_back({column.type, at, record_, false});

@@ -278,7 +278,7 @@ Status write_part(WorkFileWriter& file, MadePart& part) {
 
 Result<PartEvidence> read_evidence(const WorkFile& file) {
   const Result<std::vector<std::byte>> section = file.read(kEvidenceSection);
-  if (!section) return fail(section.error());
+  if (!section) return fail(section);
   ByteReader bytes(*section);
   PartEvidence evidence;
   get_signs(bytes, evidence.signs);
@@ -298,7 +298,7 @@ Result<PartEvidence> read_evidence(const WorkFile& file) {
 
 Result<MadePart> read_surfels(const WorkFile& file, const scan::ScanSchema& schema, std::span<const InputName> inputs) {
   const Result<std::vector<std::byte>> section = file.read(kSourcesSection);
-  if (!section) return fail(section.error());
+  if (!section) return fail(section);
   ByteReader bytes(*section);
   MadePart part;
   const uint64_t size = get_sources(bytes, inputs, part);
@@ -315,7 +315,7 @@ Result<MadePart> read_surfels(const WorkFile& file, const scan::ScanSchema& sche
   part.surfels.estimates.kinds.resize(size);
   size_t next = kFirstArray;
   Status status = for_each_array(part.surfels, [&](std::span<std::byte> array) { return file.read(next++, array); });
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return part;
 }
 
@@ -342,7 +342,7 @@ Status write_scene(WorkFileWriter& file, const SceneResult& scene,
 
 Result<SceneResult> read_scene(const WorkFile& file) {
   const Result<std::vector<std::byte>> section = file.read(kDecisionsSection);
-  if (!section) return fail(section.error());
+  if (!section) return fail(section);
   ByteReader bytes(*section);
   SceneResult scene;
   scene.decisions.signs.oriented = bytes.get<bool>();
@@ -361,7 +361,7 @@ Result<SceneResult> read_scene(const WorkFile& file) {
 
 Result<std::vector<estimation::SurfaceSample>> read_samples(const WorkFile& file) {
   const Result<std::vector<std::byte>> section = file.read(kSamplesSection);
-  if (!section) return fail(section.error());
+  if (!section) return fail(section);
   ByteReader bytes(*section);
   std::vector<estimation::SurfaceSample> samples;
   get_samples(bytes, samples);
@@ -388,7 +388,7 @@ Status write_part_blocks(WorkFileWriter& file, const PartBlocks& part) {
 Result<StoredPart> read_part_blocks(const WorkFile& file) {
   if (file.sections() == 0) return fail(file.damaged());
   const Result<std::vector<std::byte>> section = file.read(file.sections() - 1);
-  if (!section) return fail(section.error());
+  if (!section) return fail(section);
   ByteReader bytes(*section);
   StoredPart part;
   get_list(bytes, part.blocks, [&](StoredPartBlock& block) { get_block(bytes, block); });

@@ -71,7 +71,7 @@ class VolumePass {
   Status add(const model::EncodedBlock& block, uint32_t level, const glm::u32vec3& brick) {
     const Result<uint32_t> number =
         writer_.add(block, volume::brick_key(size_, level, brick), children_of(level, brick));
-    if (!number) return fail(number.error());
+    if (!number) return fail(number);
     blocks_[level].push_back(*number);
     return {};
   }

@@ -53,7 +53,7 @@ uint64_t pieces_in(uint64_t bytes) {
 
 Result<WorkFileWriter> WorkFileWriter::create(const std::filesystem::path& target, WorkOwner owner) {
   Result<AtomicFile> file = AtomicFile::create(target);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return WorkFileWriter(std::move(*file), std::move(owner));
 }
 
@@ -80,9 +80,9 @@ Status WorkFileWriter::finish() {
 
 Result<WorkFile> WorkFile::open(const std::filesystem::path& path, const WorkOwner& owner) {
   Result<PositionedFile> file = PositionedFile::open(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   WorkFile work(path, std::move(*file));
-  if (Status status = work.read_table(owner); !status) return fail(std::move(status.error()));
+  if (Status status = work.read_table(owner); !status) return fail(status);
   return work;
 }
 
@@ -141,7 +141,7 @@ Status WorkFile::read(size_t section, std::span<std::byte> bytes) const {
 Result<std::vector<std::byte>> WorkFile::read(size_t section) const {
   if (section >= sections_.size()) return fail(damaged());
   std::vector<std::byte> bytes(sections_[section].bytes);
-  if (Status status = read(section, bytes); !status) return fail(std::move(status.error()));
+  if (Status status = read(section, bytes); !status) return fail(status);
   return bytes;
 }
 

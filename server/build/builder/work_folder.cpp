@@ -13,10 +13,10 @@ namespace fs = std::filesystem;
 
 Result<std::string> text_in(const fs::path& path) {
   const Result<PositionedFile> file = PositionedFile::open(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   std::string text(file->size(), ' ');
   if (Status status = file->read(0, std::as_writable_bytes(std::span(text))); !status) {
-    return fail(status.error().kind, path.string() + ": " + status.error().message);
+    return fail_about(path.string(), status);
   }
   return text;
 }
@@ -88,7 +88,7 @@ Result<WorkFolder> WorkFolder::open(const fs::path& folder, const std::string& p
   if (!text && text.error().kind == ErrorKind::kNotFound) {
     return fail(ErrorKind::kNotFound, folder.string() + ": holds no plan" + remedy);
   }
-  if (!text) return fail(text.error());
+  if (!text) return fail(text);
   Result<BuildPlan> plan = read_plan(*text);
   if (!plan) return fail(plan.error().kind, path.string() + ": " + plan.error().message + remedy);
   if (plan->request.program != program) {

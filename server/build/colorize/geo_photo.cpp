@@ -116,13 +116,13 @@ Result<PhotoFrame> frame_of(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored)) continue;
     const Result<MappedFile> content = MappedFile::open(file);
-    if (!content) return fail(content.error());
+    if (!content) return fail(content);
     Result<PhotoFrame> frame = parse_world_file(scan::as_text(content->bytes()));
     if (frame) return frame;
-    return fail(frame.error().kind, file.string() + ": " + frame.error().message);
+    return fail_about(file.string(), frame);
   }
   const Result<MappedFile> content = MappedFile::open(path);
-  if (!content) return fail(content.error());
+  if (!content) return fail(content);
   return parse_geotiff(content->bytes()).map_error([&path](const Error& error) {
     return Error{error.kind, path.string() + ": has no world file, and " + error.message};
   });
@@ -148,13 +148,13 @@ Result<PhotoFrame> parse_world_file(std::string_view text) {
   }
   PhotoFrame frame{glm::dmat2(n[0], n[1], n[2], n[3]), {}};
   frame.origin = glm::dvec2(n[4], n[5]) - frame.to_world * glm::dvec2(0.5);
-  if (Status status = check_frame(frame); !status) return fail(std::move(status.error()));
+  if (Status status = check_frame(frame); !status) return fail(status);
   return frame;
 }
 
 Result<PhotoFrame> parse_geotiff(std::span<const std::byte> bytes) {
   const Result<TiffTags> tags = TiffTags::open(bytes);
-  if (!tags) return fail(tags.error());
+  if (!tags) return fail(tags);
   const std::vector<double> scale = tags->doubles(33550);
   const std::vector<double> tie = tags->doubles(33922);
   const std::vector<double> matrix = tags->doubles(34264);
@@ -169,15 +169,15 @@ Result<PhotoFrame> parse_geotiff(std::span<const std::byte> bytes) {
     return damaged("its TIFF tags do not state where it lies");
   }
   if (counts_centres(*tags)) frame.origin -= frame.to_world * glm::dvec2(0.5);
-  if (Status status = check_frame(frame); !status) return fail(std::move(status.error()));
+  if (Status status = check_frame(frame); !status) return fail(status);
   return frame;
 }
 
 Result<GeoPhoto> read_geo_photo(const std::filesystem::path& path, const scan::DecodingLimit& limit) {
   Result<PhotoFrame> frame = frame_of(path);
-  if (!frame) return fail(std::move(frame.error()));
+  if (!frame) return fail(frame);
   Result<mesh::Texture> texture = mesh::read_texture({path.string(), path, {}, {}}, limit);
-  if (!texture) return fail(texture.error().kind, path.string() + ": " + texture.error().message);
+  if (!texture) return fail_about(path.string(), texture);
   return GeoPhoto{std::move(*texture), *frame};
 }
 

@@ -23,11 +23,11 @@ class HeightMap {
  public:
   static Result<HeightMap> of(const scan::ScanStream& scan, const scan::DecodingLimit& limit) {
     HeightMap map(scan);
-    if (Status status = limit.check(map.columns_ * map.rows_ * sizeof(float)); !status) return fail(status.error());
+    if (Status status = limit.check(map.columns_ * map.rows_ * sizeof(float)); !status) return fail(status);
     map.heights_.assign(map.columns_ * map.rows_, -std::numeric_limits<float>::infinity());
     for (size_t piece = 0; piece < scan.pieces(); ++piece) {
       const Result<ScanPoints> points = scan.read(piece);
-      if (!points) return fail(points.error());
+      if (!points) return fail(points);
       for (const glm::dvec3& p : points->positions) map.add(p);
     }
     return map;
@@ -99,7 +99,7 @@ Result<scan::ScanStream> paint_from_above(scan::ScanStream scan, const std::file
                                           const GeoPhoto& photo, const scan::DecodingLimit& limit,
                                           std::optional<uint64_t> sample, PaintReport& report) {
   Result<HeightMap> heights = HeightMap::of(scan, limit);
-  if (!heights) return fail(heights.error().kind, path.string() + ": " + heights.error().message);
+  if (!heights) return fail_about(path.string(), heights);
   const Painter painter = [&photo, map = std::make_shared<const HeightMap>(std::move(*heights))](
                               const glm::dvec3& p, glm::u8vec3& color) { return paint(photo, *map, p, color); };
   return paint_scan(std::move(scan), path, painter, sample, report);

@@ -120,17 +120,16 @@ Result<std::vector<Photo>> take_photos(std::span<const PhotoCamera> cameras, con
   for (const PhotoCamera& camera : cameras) {
     const std::string name = camera.image.string();
     Result<mesh::Texture> texture = mesh::read_texture({name, camera.image, {}, {}}, limit);
-    if (!texture) return fail(texture.error().kind, name + ": " + texture.error().message);
+    if (!texture) return fail_about(name, texture);
     Photo photo{camera, std::move(*texture), {}, {}};
     photo.frame = frame_of(camera, photo.texture);
     kinds::PickQuery query;
     query.frame = photo.frame;
     Result<std::vector<pick::FrontPixel>> front = pick::find_front_surface(model, query, blocks, never);
-    if (!front) return fail(std::move(front.error()));
+    if (!front) return fail(front);
     photo.front = std::move(*front);
     bytes += photo.texture.texels.size() * 4 + photo.front.size() * sizeof(pick::FrontPixel);
-    if (Status status = limit.check(bytes); !status)
-      return fail(status.error().kind, name + ": " + status.error().message);
+    if (Status status = limit.check(bytes); !status) return fail_about(name, status);
     photos.push_back(std::move(photo));
   }
   return photos;

@@ -86,7 +86,7 @@ class PaintedRows : public scan::RowSource {
 
 Result<scan::PointTable> PaintedRows::read(size_t piece) const {
   Result<ScanPoints> points = scan_.read(piece);
-  if (!points) return fail(std::move(points.error()));
+  if (!points) return fail(points);
   std::vector<glm::u8vec3> colors = own_colors(*points);
   for (size_t i = 0; i < colors.size(); ++i) {
     ++(*counts_)[static_cast<size_t>(painter_(points->positions[i], colors[i]))];

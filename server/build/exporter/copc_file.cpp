@@ -71,7 +71,7 @@ class CopcFile : public NodeBatch {
     if (status) status = complete_head(facts, table, hierarchy);
     const uint64_t bytes = file_.position();
     if (status) status = file_.commit();
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
     return bytes;
   }
 
@@ -153,9 +153,9 @@ class CopcFile : public NodeBatch {
 Result<std::unique_ptr<NodeBatch>> create_copc(const std::filesystem::path& target, LasHead head, uint64_t most_bytes,
                                                size_t most_entries) {
   Result<AtomicFile> file = AtomicFile::create(target);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   auto copc = std::make_unique<CopcFile>(std::move(*file), std::move(head), most_bytes, most_entries);
-  if (Status status = copc->write_head(); !status) return fail(std::move(status.error()));
+  if (Status status = copc->write_head(); !status) return fail(status);
   return copc;
 }
 

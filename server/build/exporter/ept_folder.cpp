@@ -133,7 +133,7 @@ class EptFolder : public NodeBatch {
     if (status) status = write_hierarchy();
     if (status) status = write_text("ept.json", description(facts).dump(1));
     if (status) status = put_in_place();
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
     return bytes_;
   }
 
@@ -220,7 +220,7 @@ class EptFolder : public NodeBatch {
 
   [[nodiscard]] Status write_file(const std::string& name, std::span<const std::byte> bytes) const {
     Result<AtomicFile> file = AtomicFile::create(unfinished_ / name);
-    Status status = file ? file->append(bytes) : Status(fail(std::move(file.error())));
+    Status status = file ? file->append(bytes) : Status(fail(file));
     return status ? file->commit_unflushed() : status;
   }
 
@@ -256,9 +256,9 @@ Result<std::unique_ptr<NodeBatch>> create_ept(const fs::path& target, LasHead he
   const std::string prefix = ".surfcast-" + folder.filename().string() + "-";
   remove_abandoned_folders(parent, prefix);
   Result<ScratchFolder> scratch = ScratchFolder::create(parent, prefix);
-  if (!scratch) return fail(std::move(scratch.error()));
+  if (!scratch) return fail(scratch);
   auto ept = std::make_unique<EptFolder>(folder, std::move(*scratch), std::move(head), most_bytes, most_entries);
-  if (Status status = ept->make_folders(); !status) return fail(std::move(status.error()));
+  if (Status status = ept->make_folders(); !status) return fail(status);
   return ept;
 }
 

@@ -8,8 +8,8 @@
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include "base/ascii_text.h"
 #include "base/atomic_file.h"
-#include "base/letter_case.h"
 #include "base/mapped_file.h"
 #include "exporter/las14.h"
 #include "exporter/las_copy.h"
@@ -40,7 +40,7 @@ Status for_each_piece(size_t pieces, const std::function<Result<T>(size_t)>& rea
     std::vector<Result<T>> batch(std::min(at_once, pieces - first));
     oneapi::tbb::parallel_for(size_t{0}, batch.size(), [&](size_t i) { batch[i] = read(first + i); });
     for (Result<T>& piece : batch) {
-      if (!piece) return fail(std::move(piece.error()));
+      if (!piece) return fail(piece);
       if (Status status = use(std::move(*piece)); !status) return status;
     }
   }
@@ -77,7 +77,7 @@ bool is_las(PointFormat format) {
 Result<bool> holds_records(const fs::path& source) {
   if (scan::scan_folder_of(source)) return false;
   const Result<MappedFile> file = MappedFile::open(source);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   // What is of no format here may be one of grid::open_scan, which reports all others.
   const Result<scan::ScanFormat> format = scan::scan_format_of(file->bytes(), source);
   return format && *format == scan::ScanFormat::kLas;
@@ -92,14 +92,14 @@ Result<std::unique_ptr<RecordWriter>> create_records(const fs::path& target, Las
     return create_octree_file(target, std::move(head), *form.octree, octree);
   }
   Result<LasFileWriter> file = LasFileWriter::create(target, std::move(head));
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return std::make_unique<LasFileWriter>(std::move(*file));
 }
 
 Result<ExportReport> copy_records(const fs::path& source, const fs::path& target, const TargetForm& form,
                                   const ExportOptions& options) {
   const Result<scan::LasRecords> records = scan::LasRecords::open(source, options.selection);
-  if (!records) return fail(records.error());
+  if (!records) return fail(records);
   LasCopy copy = plan_las_copy(records->header(), records->file(), form.format == PointFormat::kLaz);
   const int point_format = copy.head.point_format;
   const size_t record_bytes = copy.head.record_length;
@@ -107,7 +107,7 @@ Result<ExportReport> copy_records(const fs::path& source, const fs::path& target
     for (std::string& note : become_version_14(copy.head, records->header().crs)) copy.notes.push_back(std::move(note));
   }
   const Result<std::unique_ptr<RecordWriter>> writer = create_records(target, copy.head, form, options);
-  if (!writer) return fail(writer.error());
+  if (!writer) return fail(writer);
   const auto as_written = [&](Bytes piece) {
     piece = without_packets(std::move(piece), records->header(), copy);
     return form.octree ? modern_records(std::move(piece), point_format, record_bytes) : piece;
@@ -115,7 +115,7 @@ Result<ExportReport> copy_records(const fs::path& source, const fs::path& target
   const Status copied = for_each_piece<Bytes>(
       records->pieces(), [&](size_t piece) { return records->read(piece).map(as_written); },
       [&](const Bytes& piece) { return (*writer)->append(piece); });
-  if (!copied) return fail(copied.error());
+  if (!copied) return fail(copied);
   if ((*writer)->points() == 0)
     return fail(ErrorKind::kInvalidInput, source.string() + ": has no points in the selection");
   return (*writer)->finish().map([&](uint64_t bytes) { return ExportReport{(*writer)->points(), bytes, copy.notes}; });
@@ -126,8 +126,8 @@ class EncodedFile : public PointWriter {
  public:
   static Result<std::unique_ptr<PointWriter>> create(const fs::path& target, std::unique_ptr<PointEncoder> encoder) {
     Result<AtomicFile> file = AtomicFile::create(target);
-    if (!file) return fail(std::move(file.error()));
-    if (Status status = file->append(encoder->head()); !status) return fail(std::move(status.error()));
+    if (!file) return fail(file);
+    if (Status status = file->append(encoder->head()); !status) return fail(status);
     return std::make_unique<EncodedFile>(std::move(*file), std::move(encoder));
   }
   EncodedFile(AtomicFile file, std::unique_ptr<PointEncoder> encoder)
@@ -142,7 +142,7 @@ class EncodedFile : public PointWriter {
     Status status = file_.append(encoder_->tail());
     const uint64_t bytes = file_.position();
     if (status) status = file_.commit();
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
     return bytes;
   }
 
@@ -176,14 +176,14 @@ Result<std::unique_ptr<PointWriter>> create_las(const fs::path& target, LasPoint
   points.compressed = form.format == PointFormat::kLaz;
   points.modern = form.octree.has_value();
   Result<LasTable> table = plan_las_table(points);
-  if (!table) return fail(std::move(table.error()));
+  if (!table) return fail(table);
   if (!points.schema->grid || *points.schema->grid != table->grid)
     notes.push_back("coordinates are rounded to multiples of " + shortest(table->grid.scale.x));
   if (form.octree) {
     for (std::string& note : become_version_14(table->head, points.schema->crs)) notes.push_back(std::move(note));
   }
   Result<std::unique_ptr<RecordWriter>> file = create_records(target, table->head, form, options);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return std::make_unique<LasTableWriter>(std::move(*file), std::move(*table));
 }
 
@@ -203,15 +203,15 @@ Result<std::unique_ptr<PointWriter>> create_writer(const fs::path& target, const
 Result<ExportReport> convert_points(const fs::path& source, const fs::path& target, const TargetForm& form,
                                     const ExportOptions& options) {
   const Result<scan::ScanStream> scan = grid::open_scan(source, options.limit, {}, options.selection);
-  if (!scan) return fail(scan.error());
+  if (!scan) return fail(scan);
   ExportReport report;
   report.notes = scan->schema().notes;
   const Result<std::unique_ptr<PointWriter>> writer = create_writer(target, *scan, form, options, report.notes);
-  if (!writer) return fail(writer.error());
+  if (!writer) return fail(writer);
   const Status written = for_each_piece<scan::ScanPoints>(
       scan->pieces(), [&](size_t piece) { return scan->read(piece); },
       [&](const scan::ScanPoints& points) { return (*writer)->append(points); });
-  if (!written) return fail(written.error());
+  if (!written) return fail(written);
   report.points = (*writer)->written();
   if (report.points < scan->size())
     report.notes.push_back(std::to_string(scan->size() - report.points) + " points without coordinates are left out");
@@ -229,7 +229,7 @@ Result<PointFacts> count_points(const ModelPoints& points, WantedFacts wanted) {
         facts.add(piece);
         return {};
       });
-  if (!counted) return fail(counted.error());
+  if (!counted) return fail(counted);
   return facts;
 }
 
@@ -244,7 +244,7 @@ Result<std::unique_ptr<PointWriter>> create_model_writer(const fs::path& target,
   }
   Result<std::unique_ptr<PointEncoder>> encoder =
       make_point_encoder(form.format, std::move(schema), facts, options.encoding);
-  if (!encoder) return fail(std::move(encoder.error()));
+  if (!encoder) return fail(encoder);
   if (std::string note = (*encoder)->note(); !note.empty()) notes.push_back(std::move(note));
   return EncodedFile::create(target, std::move(*encoder));
 }
@@ -254,18 +254,18 @@ Result<ExportReport> export_points_of_model(std::shared_ptr<const model::ModelFi
   const std::string source = model->path().string();
   const Result<ModelPoints> points =
       ModelPoints::open(std::move(model), source, {.points = options.selection, .source_coordinates = true});
-  if (!points) return fail(points.error());
+  if (!points) return fail(points);
   const Result<PointFacts> facts = count_points(*points, facts_for(form.format));
-  if (!facts) return fail(facts.error());
+  if (!facts) return fail(facts);
   if (facts->count == 0) return fail(ErrorKind::kInvalidInput, source + ": has no points in the selection");
   ExportReport report{facts->count, 0, {}};
   const Result<std::unique_ptr<PointWriter>> writer =
       create_model_writer(target, points->schema(), *facts, form, options, report.notes);
-  if (!writer) return fail(writer.error());
+  if (!writer) return fail(writer);
   const Status written = for_each_piece<scan::ScanPoints>(
       points->pieces(), [&](size_t piece) { return points->read(piece); },
       [&](const scan::ScanPoints& piece) { return (*writer)->append(piece); });
-  if (!written) return fail(written.error());
+  if (!written) return fail(written);
   return (*writer)->finish().map([&](uint64_t bytes) {
     report.bytes = bytes;
     return report;
@@ -276,14 +276,14 @@ Result<ExportReport> export_points_of_model(std::shared_ptr<const model::ModelFi
 
 Result<ExportReport> export_scan(const fs::path& source, const fs::path& target, const ExportOptions& options) {
   const Result<TargetForm> form = form_of(target);
-  if (!form) return fail(form.error());
+  if (!form) return fail(form);
   if (lower_extension(source) == ".surf") {
     return model::ModelFile::open(source).and_then([&](model::ModelFile model) {
       return export_points_of_model(std::make_shared<const model::ModelFile>(std::move(model)), target, *form, options);
     });
   }
   const Result<bool> records = holds_records(source);
-  if (!records) return fail(records.error());
+  if (!records) return fail(records);
   if (*records && is_las(form->format) && !options.encoding.scale) return copy_records(source, target, *form, options);
   return convert_points(source, target, *form, options);
 }
@@ -291,7 +291,7 @@ Result<ExportReport> export_scan(const fs::path& source, const fs::path& target,
 Result<ExportReport> export_model(std::shared_ptr<const model::ModelFile> model, const fs::path& target,
                                   const ExportOptions& options) {
   const Result<TargetForm> form = form_of(target);
-  if (!form) return fail(form.error());
+  if (!form) return fail(form);
   return export_points_of_model(std::move(model), target, *form, options);
 }
 

@@ -25,9 +25,9 @@ LasFileWriter::LasFileWriter(AtomicFile file, std::filesystem::path target, LasH
 
 Result<LasFileWriter> LasFileWriter::create(const std::filesystem::path& target, LasHead head) {
   Result<AtomicFile> file = AtomicFile::create(target);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   LasFileWriter writer(std::move(*file), target, std::move(head));
-  if (Status status = writer.write_head(); !status) return fail(std::move(status.error()));
+  if (Status status = writer.write_head(); !status) return fail(status);
   return writer;
 }
 
@@ -96,12 +96,12 @@ Result<uint64_t> LasFileWriter::finish() {
   }
   Status status = head_.compressed ? write_chunk_table() : Status();
   if (status) status = write_extended();
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   fill_in_header(head_, counts_, data_offset_);
   status = file_.overwrite(0, head_.header);
   const uint64_t bytes = file_.position();
   if (status) status = file_.commit();
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return bytes;
 }
 

@@ -203,7 +203,7 @@ class RecordMaker {
   Result<Bytes> make() {
     for (size_t i = 0; i < rows_.size(); ++i) put_fixed(i);
     for (const LasPlace& place : table_.places) {
-      if (Status status = put_attribute(place); !status) return fail(std::move(status.error()));
+      if (Status status = put_attribute(place); !status) return fail(status);
     }
     return std::move(bytes_);
   }
@@ -274,7 +274,7 @@ surfel::Grid lattice_for(const geometry::Box& bounds, std::optional<double> scal
 Result<LasTable> plan_las_table(const LasPoints& points) {
   const ScanSchema& schema = *points.schema;
   const Result<surfel::Grid> grid = grid_of(points);
-  if (!grid) return fail(grid.error());
+  if (!grid) return fail(grid);
   LasTable table;
   table.grid = *grid;
   table.head.compressed = points.compressed;

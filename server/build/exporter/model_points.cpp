@@ -73,7 +73,7 @@ Result<ModelPoints> ModelPoints::open(std::shared_ptr<const model::ModelFile> mo
   ModelPoints points(std::move(model), name, selection);
   Status status = points.describe();
   if (status) status = points.state_system();
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return points;
 }
 
@@ -99,7 +99,7 @@ Status ModelPoints::describe() {
     return failed(ErrorKind::kUnsupported, "has no points, but " + other_kinds(info));
   }
   const Result<model::DecodedBlock> block = model_->decode(leaves_.empty() ? *sample : leaves_.front().block);
-  if (!block) return fail(block.error());
+  if (!block) return fail(block);
   schema_.normals = selection_.normals;
   schema_.color_bits = info.color_bits;
   schema_.z_up = info.z_up;
@@ -113,7 +113,7 @@ Status ModelPoints::describe() {
 
 Status ModelPoints::state_system() {
   const Result<model::Georeference> georeference = model_->georeference();
-  if (!georeference) return fail(georeference.error());
+  if (!georeference) return fail(georeference);
   schema_.crs = crs_text(georeference->system);
   if (!selection_.source_coordinates || !georeference->source.known()) return {};
   Result<std::unique_ptr<const crs::Transformation>> way = way_to_source(*georeference, model_->info().bounds);
@@ -202,10 +202,10 @@ Result<PointFacts> ModelPoints::count(size_t piece, WantedFacts wanted) const {
   const Leaf& leaf = leaves_[piece];
   const Result<model::DecodedBlock> block =
       model_->decode(leaf.block, plain ? model::WantedScalars::kNone : model::WantedScalars::kAll);
-  if (!block) return fail(block.error());
+  if (!block) return fail(block);
   const std::vector<uint32_t> rows = chosen(*block, leaf.first);
   const Result<std::vector<glm::dvec3>> places = positions(*block, rows);
-  if (!places) return fail(places.error());
+  if (!places) return fail(places);
   PointFacts facts;
   facts.count = rows.size();
   if (!to_source_) facts.grid = block->grid;
@@ -223,10 +223,10 @@ Result<PointFacts> ModelPoints::count(size_t piece, WantedFacts wanted) const {
 Result<scan::ScanPoints> ModelPoints::read(size_t piece) const {
   const Leaf& leaf = leaves_[piece];
   const Result<model::DecodedBlock> block = model_->decode(leaf.block);
-  if (!block) return fail(block.error());
+  if (!block) return fail(block);
   const std::vector<uint32_t> rows = chosen(*block, leaf.first);
   Result<std::vector<glm::dvec3>> places = positions(*block, rows);
-  if (!places) return fail(places.error());
+  if (!places) return fail(places);
   scan::ScanPoints points;
   points.positions = std::move(*places);
   if (schema_.normals) points.normals = rows_of(block->normals, rows);

@@ -45,7 +45,7 @@ class OctreeFileWriter : public RecordWriter {
       facts_.most_time = most_time_;
     }
     Status status = write_octree(spool_, head_, facts_.cube, target_, options_, *nodes_);
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
     return nodes_->finish(facts_);
   }
 
@@ -68,7 +68,7 @@ Result<std::unique_ptr<RecordWriter>> create_octree_file(const std::filesystem::
   const bool ept = form == OctreeForm::kEpt;
   Result<std::unique_ptr<NodeBatch>> nodes = ept ? create_ept(target, head, batch, options.page_entries)
                                                  : create_copc(target, head, batch, options.page_entries);
-  if (!nodes) return fail(std::move(nodes.error()));
+  if (!nodes) return fail(nodes);
   // Temporary files of a folder lie beside it.
   return std::make_unique<OctreeFileWriter>(ept ? target.parent_path() : target, std::move(head), std::move(*nodes),
                                             options);

@@ -62,7 +62,7 @@ class OctreeDivider {
   Status write(RecordSpool& spool, const std::filesystem::path& target) {
     if (Status status = parts_.divide(spool, target); !status) return status;
     Result<OpenCell> root = write_below({}, 0, parts().size());
-    if (!root) return fail(std::move(root.error()));
+    if (!root) return fail(root);
     return write_node(root->key, std::move(root->points.records));
   }
 
@@ -107,7 +107,7 @@ class OctreeDivider {
     for (size_t i = 0; i < children.size(); ++i) {
       Bytes rest = split_off(children[i].points, sample, ranges[i].first, cell.points);
       cell.has_nodes = cell.has_nodes || !rest.empty();
-      if (Status status = write_node(children[i].key, std::move(rest)); !status) return fail(std::move(status.error()));
+      if (Status status = write_node(children[i].key, std::move(rest)); !status) return fail(status);
     }
     return cell;
   }
@@ -148,10 +148,10 @@ class OctreeDivider {
 
   Result<OpenCell> write_part(size_t number) {
     Result<Bytes> records = parts_.take(number);
-    if (!records) return fail(std::move(records.error()));
+    if (!records) return fail(records);
     const SortedPoints points = sorted(std::move(*records));
     const PartNode node = make_node(points, parts()[number].key, 0, points.keys.size());
-    if (Status status = write_children(points, node); !status) return fail(std::move(status.error()));
+    if (Status status = write_children(points, node); !status) return fail(status);
     OpenCell cell{node.key, {}, !node.children.empty()};
     cell.points.records = records_of(points, node);
     for (const uint32_t i : node.points) cell.points.keys.push_back(points.keys[i]);

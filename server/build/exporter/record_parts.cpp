@@ -54,7 +54,7 @@ Result<std::vector<RecordParts::CellCount>> RecordParts::count_cells(
     }
     return {};
   });
-  if (!counted) return fail(counted.error());
+  if (!counted) return fail(counted);
   std::vector<CellCount> all;
   all.reserve(cells.size());
   for (const auto& [first, cell] : cells) all.push_back(cell);
@@ -65,7 +65,7 @@ Result<std::vector<RecordParts::CellCount>> RecordParts::count_points(RecordSpoo
   Result<std::vector<CellCount>> cells = count_cells(spool, kCountDepths.front(), [](uint64_t) { return true; });
   for (size_t i = 1; cells && i < kCountDepths.size() && kCountDepths[i - 1] < limits_.depth; ++i) {
     Status status = refine(spool, *cells, kCountDepths[i - 1], kCountDepths[i]);
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
   }
   return cells;
 }
@@ -81,7 +81,7 @@ Status RecordParts::refine(RecordSpool& spool, std::vector<CellCount>& cells, in
     return std::binary_search(full.begin(), full.end(), code / codes_of_cell(depth));
   };
   const Result<std::vector<CellCount>> finer = count_cells(spool, finer_depth, is_full);
-  if (!finer) return fail(finer.error());
+  if (!finer) return fail(finer);
   std::erase_if(cells, [&](const CellCount& cell) { return is_full(cell.first); });
   cells.insert(cells.end(), finer->begin(), finer->end());
   std::ranges::sort(cells, {}, &CellCount::first);
@@ -112,11 +112,11 @@ Status RecordParts::divide(RecordSpool& spool, const std::filesystem::path& targ
     return {};
   }
   const Result<std::vector<CellCount>> cells = count_points(spool);
-  if (!cells) return fail(cells.error());
+  if (!cells) return fail(cells);
   choose(*cells, {}, 0);
   extents_.resize(parts_.size());
   Result<SpoolFile> file = SpoolFile::create(target);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   file_ = std::move(*file);
   return spool.for_each_batch(true, [this](std::span<const std::byte> records) { return distribute(records); });
 }
@@ -143,7 +143,7 @@ Status RecordParts::distribute(std::span<const std::byte> records) {
     places[parts[i]] += size;
   }
   const Result<uint64_t> written = file_->append(sorted);
-  return written ? Status() : fail(written.error());
+  return written ? Status() : fail(written);
 }
 
 Result<std::vector<std::byte>> RecordParts::take(size_t part) {
@@ -152,7 +152,7 @@ Result<std::vector<std::byte>> RecordParts::take(size_t part) {
   size_t at = 0;
   for (const Extent& extent : extents_[part]) {
     Status status = file_->read(extent.offset, std::span(records).subspan(at, extent.size));
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
     file_->release(extent.offset, extent.size);
     at += extent.size;
   }

@@ -19,11 +19,11 @@ Status RecordSpool::append(std::span<const std::byte> records) {
 Status RecordSpool::write_waiting() {
   if (!file_) {
     Result<SpoolFile> created = SpoolFile::create(target_);
-    if (!created) return fail(std::move(created.error()));
+    if (!created) return fail(created);
     file_ = std::move(*created);
   }
   const Result<uint64_t> written = file_->append(waiting_);
-  if (!written) return fail(written.error());
+  if (!written) return fail(written);
   waiting_.clear();
   return {};
 }

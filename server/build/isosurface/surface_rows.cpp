@@ -191,7 +191,7 @@ Status SurfacePass::write_to(int64_t end) {
 
 Status SurfacePass::keep(const PackedPlane& plane, SurfaceReport& report) {
   const Result<uint64_t> place = file_.append(plane.records);
-  if (!place) return fail(place.error());
+  if (!place) return fail(place);
   report.points += plane.records.size() / records_.size();
   report.thinned += plane.thinned;
   report.lost += plane.lost;
@@ -223,14 +223,14 @@ Result<SurfaceRows> find_surfaces(const std::filesystem::path& grid, std::span<c
                                   uint64_t memory, const std::filesystem::path& target) {
   const auto named = [&grid](const Error& error) { return fail(error.kind, grid.string() + ": " + error.message); };
   Result<grid::GridReader> reader = grid::GridReader::open(grid);
-  if (!reader) return fail(std::move(reader.error()));
+  if (!reader) return fail(reader);
   if (Status status = check_scalar(reader->header()); !status) return named(status.error());
   const Result<int64_t> together = planes_together(reader->header(), memory);
   if (!together) return named(together.error());
   Result<SpoolFile> file = SpoolFile::create(target);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   SurfacePass pass(*reader, surfaces, *together, *file);
-  if (Status status = pass.run(); !status) return fail(std::move(status.error()));
+  if (Status status = pass.run(); !status) return fail(status);
   if (Status status = check_found(pass); !status) return named(status.error());
   return SurfaceRows{rows_of(std::move(*file), pass.records()), pass.reports()};
 }

@@ -32,16 +32,16 @@ constexpr uint64_t kMaxRecordBytes = uint64_t{256} << 20;
 Result<LasHead> read_head(const ByteSource& file) {
   LasHead head;
   head.bytes.resize(std::min<uint64_t>(kHeaderBytes, file.size()));
-  if (Status status = file.read(0, head.bytes); !status) return fail(std::move(status.error()));
+  if (Status status = file.read(0, head.bytes); !status) return fail(status);
   const bool las = head.bytes.size() == kHeaderBytes &&
                    std::equal(head.bytes.begin(), head.bytes.begin() + 4, reinterpret_cast<const std::byte*>("LASF"));
   if (!las) return invalid_input("is no COPC file");
   const uint64_t size = scan::load<uint32_t>(&head.bytes[kDataOffsetAt]);
   if (size > std::min(kMaxHead, file.size())) return invalid_input("the LAS points begin too far within the file");
   head.bytes.resize(std::max<uint64_t>(size, kHeaderBytes));
-  if (Status status = file.read(0, head.bytes); !status) return fail(std::move(status.error()));
+  if (Status status = file.read(0, head.bytes); !status) return fail(status);
   Result<scan::LasHeader> header = scan::parse_las_header(head.bytes);
-  if (!header) return fail(std::move(header.error()));
+  if (!header) return fail(header);
   if (header->copc_record.empty() || !header->compressed || header->laszip_record.empty()) {
     return invalid_input("is LAS or LAZ, but no COPC file: it has no hierarchy");
   }
@@ -82,16 +82,16 @@ class CopcReader : public NodeReader {
 
   [[nodiscard]] Result<scan::PointTable> read(const Node& node) const override {
     std::vector<std::byte> bytes(node.bytes.size);
-    if (Status status = file_->read(node.bytes.offset, bytes); !status) return fail(std::move(status.error()));
+    if (Status status = file_->read(node.bytes.offset, bytes); !status) return fail(status);
     const laz::Chunk chunk{0, node.points, 0, bytes.size()};
     const scan::LasHeader& header = head_.header;
     const laz::LazPoints points{header.point_format, header.record_length, node.points, 0};
     const Result<laz::LazFile> file = laz::LazFile::open_chunks(bytes, points, header.laszip_record, {chunk});
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     Result<laz::LazChunkReader> reader = file->read_chunk(chunk);
-    if (!reader) return fail(std::move(reader.error()));
+    if (!reader) return fail(reader);
     std::vector<std::byte> records(node.points * header.record_length);
-    if (Status status = reader->read(records); !status) return fail(std::move(status.error()));
+    if (Status status = reader->read(records); !status) return fail(status);
     scan::PointTable table = scan::las_table(records.data(), node.points, header);
     table.records = std::move(records);
     return table;
@@ -116,7 +116,7 @@ Result<std::vector<Node>> checked_nodes(const scan::CopcNodes& read, size_t reco
                     from.points > 0 ? from.chunk : ByteRange()};
     const laz::Chunk chunk{0, node.points, node.bytes.offset, node.bytes.size};
     const Status sound = node.points > 0 ? laz::check_chunk(chunk, record_length, file_bytes) : Status();
-    if (!sound) return fail(sound.error());
+    if (!sound) return fail(sound);
     if (node.points > kMaxRecordBytes / record_length) return invalid_input("a node has too many points to be decoded");
     chunk_bytes += node.bytes.size;
     nodes.push_back(node);
@@ -129,16 +129,16 @@ Result<std::vector<Node>> checked_nodes(const scan::CopcNodes& read, size_t reco
 
 Result<OpenedTree> open_copc(std::unique_ptr<const ByteSource> file, uint64_t most_bytes) {
   Result<LasHead> head = read_head(*file);
-  if (!head) return fail(std::move(head.error()));
+  if (!head) return fail(head);
   const Result<scan::CopcInfo> info = scan::read_copc_info(head->header.copc_record);
-  if (!info) return fail(info.error());
+  if (!info) return fail(info);
   const Result<scan::CopcNodes> read = scan::read_copc_nodes(*file, *info, {}, most_bytes);
-  if (!read) return fail(read.error());
+  if (!read) return fail(read);
   Result<std::vector<Node>> nodes = checked_nodes(*read, head->header.record_length, file->size());
-  if (!nodes) return fail(std::move(nodes.error()));
+  if (!nodes) return fail(nodes);
   const Cells cells{info->low, info->side};
   Result<NodeTree> tree = arrange_nodes(std::move(*nodes), cells, root_spacing(cells, info->spacing));
-  if (!tree) return fail(std::move(tree.error()));
+  if (!tree) return fail(tree);
   OpenedTree opened;
   opened.bounds = stated_bounds(head->bytes);
   opened.tree = std::move(*tree);

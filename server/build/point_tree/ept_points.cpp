@@ -43,7 +43,7 @@ class EptReader : public NodeReader {
   [[nodiscard]] Result<scan::PointTable> read(const Node& node) const override {
     if (node.key.depth == 0) return points_of_tile(node, root_);
     const Result<std::vector<std::byte>> tile = folder_->read(name_of_tile(node), kMaxTile);
-    if (!tile) return fail(tile.error());
+    if (!tile) return fail(tile);
     return points_of_tile(node, *tile);
   }
 
@@ -68,13 +68,13 @@ class EptReader : public NodeReader {
 Result<scan::EptDescription> read_description(const ByteSource& file) {
   if (file.size() > kMaxDescription) return fail(ErrorKind::kLimit, "is too large for a description");
   std::vector<std::byte> bytes(file.size());
-  if (Status status = file.read(0, bytes); !status) return fail(std::move(status.error()));
+  if (Status status = file.read(0, bytes); !status) return fail(status);
   return scan::parse_ept(bytes);
 }
 
 Result<NodeTree> arrange_ept(const scan::EptDescription& ept, const scan::EptNodes& read) {
   const Result<Cells> cells = cells_below(ept.cube);
-  if (!cells) return fail(cells.error());
+  if (!cells) return fail(cells);
   std::vector<Node> nodes;
   nodes.reserve(read.size());
   for (const auto& [key, points] : read) {
@@ -91,15 +91,15 @@ Result<NodeTree> arrange_ept(const scan::EptDescription& ept, const scan::EptNod
 Result<OpenedTree> open_ept(std::unique_ptr<const ByteSource> description, std::unique_ptr<const FileFolder> folder,
                             uint64_t most_bytes) {
   Result<scan::EptDescription> ept = read_description(*description);
-  if (!ept) return fail(std::move(ept.error()));
+  if (!ept) return fail(ept);
   const Result<scan::EptNodes> nodes = scan::read_ept_nodes(*ept, *folder, {}, most_bytes);
-  if (!nodes) return fail(nodes.error());
+  if (!nodes) return fail(nodes);
   Result<NodeTree> tree = arrange_ept(*ept, *nodes);
-  if (!tree) return fail(std::move(tree.error()));
+  if (!tree) return fail(tree);
   Result<std::vector<std::byte>> root = folder->read(scan::ept_tile_name(*ept, {0, 0, 0, 0}), kMaxTile);
-  if (!root) return fail(std::move(root.error()));
+  if (!root) return fail(root);
   Result<scan::EptColumns> columns = scan::ept_columns(*ept, *root);
-  if (!columns) return fail(std::move(columns.error()));
+  if (!columns) return fail(columns);
   OpenedTree opened;
   opened.bounds = ept->conforming;
   opened.tree = std::move(*tree);

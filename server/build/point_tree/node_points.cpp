@@ -52,7 +52,7 @@ size_t NodePoints::bytes() const {
 
 Result<scan::TableMeaning> decide_meaning(const NodeReader& reader, const scan::PointTable& root) {
   const Result<scan::ColumnRoles> roles = scan::assign_roles(reader.columns(), {});
-  if (!roles) return fail(roles.error());
+  if (!roles) return fail(roles);
   return scan::decide_meaning(ColumnsOfTree(reader), scan::find_facts(root, *roles, false));
 }
 

@@ -97,17 +97,17 @@ Result<model::ModelFile> open_tree(OpenedTree opened, const InPlaceLimits& limit
   const NodeTree& tree = frame.opened.tree;
   if (tree.nodes.front().points == 0) return fail(ErrorKind::kUnsupported, "its root has no points");
   Result<model::Georeference> system = find_system(reader.traits().crs);
-  if (!system) return fail(std::move(system.error()));
+  if (!system) return fail(system);
   frame.georeference = std::move(*system);
   const Result<scan::PointTable> table = reader.read(tree.nodes.front());
-  if (!table) return fail(table.error());
+  if (!table) return fail(table);
   Result<scan::TableMeaning> meaning = decide_meaning(reader, *table);
-  if (!meaning) return fail(std::move(meaning.error()));
+  if (!meaning) return fail(meaning);
   frame.meaning = std::move(*meaning);
   const std::string name = reader.source().name();
   frame.meaning.schema.name = std::filesystem::path(name).filename().string();
   Result<NodePoints> sorted = sort_points(*table, frame.meaning, tree.cells, tree.nodes.front().key);
-  if (!sorted) return fail(std::move(sorted.error()));
+  if (!sorted) return fail(sorted);
   const auto root = std::make_shared<const NodePoints>(std::move(*sorted));
   if (root->codes.empty()) return fail(ErrorKind::kInvalidInput, "its root has no points with coordinates");
   CellSurfels surfels = surfels_of_node(tree, 0, {root}, frame.meaning);
@@ -117,7 +117,7 @@ Result<model::ModelFile> open_tree(OpenedTree opened, const InPlaceLimits& limit
   frame.table = plan_blocks(tree, frame.opened.bounds, frame.radius);
   const Result<std::vector<MadeBlock>> blocks_of_root =
       divide_surfels(tree, frame.table, 0, std::move(surfels), frame.radius);
-  if (!blocks_of_root) return fail(blocks_of_root.error());
+  if (!blocks_of_root) return fail(blocks_of_root);
   model::ModelInfo info = describe_tree(frame, *root, name, facts.scatter);
   std::vector<ldc::BlockEntry> entries = frame.table.entries;
   auto blocks =

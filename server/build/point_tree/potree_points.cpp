@@ -42,7 +42,7 @@ class PotreeReader : public NodeReader {
 
   [[nodiscard]] Result<scan::PointTable> read(const Node& node) const override {
     std::vector<std::byte> bytes(node.bytes.size);
-    if (Status status = points_.read(node.bytes.offset, bytes); !status) return fail(std::move(status.error()));
+    if (Status status = points_.read(node.bytes.offset, bytes); !status) return fail(status);
     scan::PotreeNode stated;
     stated.points = node.points;
     stated.bytes = node.bytes.size;
@@ -58,7 +58,7 @@ class PotreeReader : public NodeReader {
 
 Result<NodeTree> arrange_potree(const scan::Potree2Folder& folder, uint64_t file_bytes) {
   const Result<Cells> cells = cells_below(folder.cube);
-  if (!cells) return fail(cells.error());
+  if (!cells) return fail(cells);
   std::vector<Node> nodes;
   nodes.reserve(folder.nodes.size());
   uint64_t bytes = 0;
@@ -88,12 +88,12 @@ Result<OpenedTree> open_potree(std::unique_ptr<const ByteSource> description, ui
                 "the Potree hierarchy has more than the " + std::to_string(most_bytes) + " bytes that are allowed");
   }
   Result<scan::Potree2Folder> folder = scan::open_potree2(metadata);
-  if (!folder) return fail(std::move(folder.error()));
+  if (!folder) return fail(folder);
   const fs::path path = metadata.parent_path() / "octree.bin";
   Result<PositionedFile> points = PositionedFile::open(path);
-  if (!points) return fail(std::move(points.error()));
+  if (!points) return fail(points);
   Result<NodeTree> tree = arrange_potree(*folder, points->size());
-  if (!tree) return fail(std::move(tree.error()));
+  if (!tree) return fail(tree);
   OpenedTree opened;
   opened.tree = std::move(*tree);
   opened.reader = std::make_unique<const PotreeReader>(std::move(description), FileSource(std::move(*points), path),

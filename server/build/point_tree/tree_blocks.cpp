@@ -134,7 +134,7 @@ Result<std::shared_ptr<const NodePoints>> TreeBlocks::points_of(uint32_t number)
       const std::lock_guard lock(announced_mutex_);
       announced_.erase(number);
     }
-    if (!table) return fail(table.error());
+    if (!table) return fail(table);
     return sort_points(*table, frame_.meaning, tree.cells, node.key).map([](NodePoints points) {
       return std::make_shared<const NodePoints>(std::move(points));
     });
@@ -151,7 +151,7 @@ Result<std::shared_ptr<const TreeBlocks::Blocks>> TreeBlocks::make(uint32_t node
   PointPath path;
   for (const uint32_t step : frame_.opened.tree.path_to(node)) {
     Result<std::shared_ptr<const NodePoints>> points = points_of(step);
-    if (!points) return fail(std::move(points.error()));
+    if (!points) return fail(points);
     if (step == 0 || !(*points)->codes.empty()) path.push_back(std::move(*points));
   }
   // On this thread alone: others are asked for other blocks, and one that waits for idle processors has to.
@@ -207,7 +207,7 @@ Result<model::DecodedBlock> TreeBlocks::decode(size_t block, model::WantedScalar
     }
   }
   const Result<std::shared_ptr<const Blocks>> blocks = blocks_of(node);
-  if (!blocks) return fail(blocks.error());
+  if (!blocks) return fail(blocks);
   const std::vector<uint32_t>& numbers = frame_.table.of_node[node];
   const auto place = std::ranges::lower_bound(numbers, number) - numbers.begin();
   return with_scalars((**blocks)[static_cast<size_t>(place)], number, scalars);

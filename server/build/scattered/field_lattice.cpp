@@ -99,7 +99,7 @@ Result<FieldLattice> plan_lattice(const Samples& samples, Combination combinatio
                                   uint64_t most_samples) {
   const Extents extents(samples);
   const geometry::Box unwidened = extents.box(0);
-  if (Status status = check_places(unwidened); !status) return fail(std::move(status.error()));
+  if (Status status = check_places(unwidened); !status) return fail(status);
   FieldLattice lattice;
   if (resolution) {
     lattice.step = step_for(extents, *resolution);

@@ -161,7 +161,7 @@ Status check_columns(const scan::ScanSchema& schema, const FieldOptions& options
 Status read_pieces(const scan::ScanStream& scan, SampleReader& reader) {
   for (size_t piece = 0; piece < scan.pieces(); ++piece) {
     const Result<scan::ScanPoints> points = scan.read(piece);
-    if (!points) return fail(points.error());
+    if (!points) return fail(points);
     reader.add(*points);
   }
   return {};
@@ -199,7 +199,7 @@ Result<Samples> read_samples(const scan::ScanStream& scan, const std::filesystem
   if (Status status = check_columns(scan.schema(), options, sizes); !status) return named(status.error());
   if (Status status = check_memory(scan.size(), max_bytes); !status) return named(status.error());
   SampleReader reader(options, sizes);
-  if (Status status = read_pieces(scan, reader); !status) return fail(std::move(status.error()));
+  if (Status status = read_pieces(scan, reader); !status) return fail(status);
   Samples samples = std::move(reader).take();
   if (samples.kernels.empty()) {
     return named({ErrorKind::kInvalidInput, "no point has a finite place and value and a size above 0"});

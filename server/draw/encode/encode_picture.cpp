@@ -40,7 +40,7 @@ int largest_side(picture::FileFormat format) {
 
 Result<std::vector<std::byte>> encode_exr(const picture::Image& image, const picture::Channels* channels) {
   static const Result<EncodeFunction*> codec = load_exr_codec();
-  if (!codec) return fail(codec.error());
+  if (!codec) return fail(codec);
   Result<std::vector<std::byte>> bytes;
   (*codec)(image, channels, bytes);
   return bytes;

@@ -173,7 +173,7 @@ bool Course::may_reach(const geometry::Box& box, double reach) const {
 
 Result<Band> find_band(const model::ModelFile& model, const BandQuery& query, const std::atomic<bool>& cancelled) {
   const Result<Course> course = Course::of(query.line, model.info().z_up);
-  if (!course) return fail(course.error());
+  if (!course) return fail(course);
   const double reach = 0.5 * query.width;
   const std::vector<uint64_t> numbers = leaf_numbers(model);
   Collection collection(query.most, model.info().scalar_names.size());
@@ -186,7 +186,7 @@ Result<Band> find_band(const model::ModelFile& model, const BandQuery& query, co
     if (!wanted || !course->may_reach(entry.bounds, reach)) continue;
     if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
     const Result<model::DecodedBlock> block = model.decode(i);
-    if (!block) return fail(block.error());
+    if (!block) return fail(block);
     if (first || finer(block->grid, band.grid)) band.grid = block->grid;
     first = false;
     add_block(*block, numbers[i], *course, reach, collection);

@@ -70,7 +70,7 @@ class FrontSearch {
       if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
       if (!hits.may_show(leaf.pixels, leaf.nearest)) continue;
       const Result<std::shared_ptr<const kinds::SourceBlock>> block = source_.get(model_, leaf.block);
-      if (!block) return fail(block.error());
+      if (!block) return fail(block);
       hits.begin_block(leaf.block);
       (*block)->cover(query_, hits);
     }
@@ -156,7 +156,7 @@ Result<std::vector<FrontPixel>> find_front_surface(const model::ModelFile& model
     return {};
   };
   if (Status status = search_front_surface(model, query, blocks, cancelled, place); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   return picture;
 }

@@ -72,7 +72,7 @@ class Picker {
       if (left-- == 0) return fail(too_wide(most_blocks));
       if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
       Result<std::shared_ptr<const kinds::SourceBlock>> block = source_.get(model_, leaf.block);
-      if (!block) return fail(std::move(block.error()));
+      if (!block) return fail(block);
       collect(leaf.block, std::move(*block));
     }
     return best();

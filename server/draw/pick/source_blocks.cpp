@@ -13,7 +13,7 @@ Result<std::shared_ptr<const kinds::SourceBlock>> SourceBlocks::get(const model:
     if (auto found = cache_.find(key)) return found;
   }
   const Result<std::vector<uint32_t>> numbers = kinds::find_kinds(model, kinds_);
-  if (!numbers) return fail(numbers.error());
+  if (!numbers) return fail(numbers);
   const kinds::Kind& kind = *kinds_[(*numbers)[model.blocks()[block].kind]];
   Result<std::shared_ptr<const kinds::SourceBlock>> decoded = kind.decode(model, block);
   if (!decoded) return decoded;

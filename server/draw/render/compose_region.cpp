@@ -103,7 +103,7 @@ Result<std::optional<RegionStats>> compose_region(const RegionTask& task, Progra
     stats += **drawn;
   }
   const Result<double> read = read_picture(task, buffers, pixels);
-  if (!read) return fail(read.error());
+  if (!read) return fail(read);
   stats.read_ms = *read;
   return std::optional(stats);
 }

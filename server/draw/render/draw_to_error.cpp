@@ -32,7 +32,7 @@ class ErrorDrawing {
       if (*next == 0) {
         search_.add({0, kSamePicture});
       } else if (const Status tried = try_spacing(*next); !tried) {
-        return fail(tried.error());
+        return fail(tried);
       }
     }
     return finish();
@@ -67,7 +67,7 @@ class ErrorDrawing {
     for (const Reference& reference : references_) {
       const Region& region = reference.window.region;
       const Result<picture::Frame> part = draw_at(spacing, region);
-      if (!part) return fail(part.error());
+      if (!part) return fail(part);
       squares += reference.window.weight *
                  compare_pixels(part->image, reference.image, {0, 0, region.width, region.height}).squares;
     }
@@ -84,9 +84,9 @@ class ErrorDrawing {
   /// Chooses windows and draws what pictures of about this spacing are compared with.
   Status begin_round(double spacing) {
     const Result<picture::Frame> fine = sketch(2 * spacing);
-    if (!fine) return fail(fine.error());
+    if (!fine) return fail(fine);
     const Result<picture::Frame> coarse = sketch(4 * spacing);
-    if (!coarse) return fail(coarse.error());
+    if (!coarse) return fail(coarse);
     const ErrorSample sample =
         choose_windows(fine->image, coarse->image, request_.width, request_.height, kWindowSide, kWindows);
     covered_ = sample.covered;
@@ -94,7 +94,7 @@ class ErrorDrawing {
     references_.clear();
     for (const SampledWindow& window : sample.windows) {
       Result<picture::Frame> part = draw_at(reference_spacing_, window.region);
-      if (!part) return fail(part.error());
+      if (!part) return fail(part);
       references_.push_back({window, std::move(part->image)});
     }
     return {};

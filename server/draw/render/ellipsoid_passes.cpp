@@ -166,13 +166,13 @@ Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, const
   const EllipsoidTarget target = target_of(places);
   const EllipsoidWork work = plan(task, target);
   const Result<EllipsoidPrograms> compiled = programs.ellipsoids(task.variant, work.plan.colored, target);
-  if (!compiled) return fail(compiled.error());
+  if (!compiled) return fail(compiled);
   RegionStats stats;
   const WorkStopwatch project_watch(preemption);
   reserve(work, *compiled, buffers);
   upload_work(task, work, buffers);
   if (Status status = project(task, work, *compiled->project, buffers, preemption); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   stats.project_ms = project_watch.milliseconds();
 
@@ -186,7 +186,7 @@ Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, const
   const WorkStopwatch splat_watch(preemption);
   Status status = find_all_nearest(work, *lists, *compiled, buffers, preemption);
   if (status) status = light_and_filter(task, work, *compiled, buffers, preemption);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   stats.splat_ms = splat_watch.milliseconds();
   return std::optional(stats);
 }

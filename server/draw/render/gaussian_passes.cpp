@@ -100,7 +100,7 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, const 
   variant.layered = places.reads == Place::kSurfaces;
   ProjectionWork work = plan_work(task, kinds_of(task, kinds::DrawnAs::kGaussians));
   const Result<GaussianPrograms> compiled = programs.gaussians(variant, form_of(task, work));
-  if (!compiled) return fail(compiled.error());
+  if (!compiled) return fail(compiled);
   RegionStats stats;
   const WorkStopwatch project_watch(preemption);
   const uint32_t count = number_items(work, texels_of_gaussian);
@@ -109,7 +109,7 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, const 
   upload_items(task, work, buffers);
   upload_uniforms(buffers.frame, task.constants);
   if (Status status = project(task, work, *compiled->project, buffers, preemption); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   stats.project_ms = project_watch.milliseconds();
 
@@ -124,7 +124,7 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, const 
   // BlockView::scale.x is the unit of the projection.
   const float near = work.blocks.empty() ? 0 : static_cast<float>(SURFCAST_TRAINED_NEAR) * work.blocks.front().scale.x;
   Status status = blend_rounds(task, *lists, *compiled, near, buffers, preemption);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   stats.splat_ms = blend_watch.milliseconds();
   return std::optional(stats);
 }

@@ -18,7 +18,7 @@ namespace {
 Result<gl::Program> compute_program(const std::string& name, const std::string& file,
                                     std::span<const EmbeddedShader> more, const std::string& defines) {
   Result<std::string> text = shader_text(file, more);
-  if (!text) return fail(std::move(text.error()));
+  if (!text) return fail(text);
   return gl::make_program(name.c_str(), {{GL_COMPUTE_SHADER, name, *text}}, defines);
 }
 
@@ -148,15 +148,15 @@ Result<Programs> Programs::create(const KernelShape& shape, const std::string& d
   programs.defines_ = defines + define("SURFCAST_SILHOUETTE_LANES", shape.silhouette_lanes) +
                       (shape.shifted_halves ? "#define SURFCAST_SHIFTED_HALVES\n" : "");
   Result<gl::Program> slices = compute_program("slices.comp", "slices.comp", {}, defines);
-  if (!slices) return fail(std::move(slices.error()));
+  if (!slices) return fail(slices);
   Result<gl::Program> offsets = compute_program("bin_offsets.comp", "bin_offsets.comp", {}, defines);
-  if (!offsets) return fail(std::move(offsets.error()));
+  if (!offsets) return fail(offsets);
   Result<gl::Program> bin = compute_program("bin.comp", "bin.comp", {}, defines);
-  if (!bin) return fail(std::move(bin.error()));
+  if (!bin) return fail(bin);
   Result<gl::Program> count = compute_program("bin.comp", "bin.comp", {}, defines + "#define SURFCAST_COUNTS_LARGE\n");
-  if (!count) return fail(std::move(count.error()));
+  if (!count) return fail(count);
   Result<gl::Program> reaches = compute_program("bin.comp", "bin.comp", {}, defines + "#define SURFCAST_SELECTS\n");
-  if (!reaches) return fail(std::move(reaches.error()));
+  if (!reaches) return fail(reaches);
   programs.bin_reaches_ = std::move(*reaches);
   programs.count_large_ = std::move(*count);
   programs.slices_ = std::move(*slices);
@@ -169,7 +169,7 @@ Result<const gl::Program*> Programs::program(const Source& source, const std::st
   const std::pair key(source.name, defines);
   if (const auto found = compiled_.find(key); found != compiled_.end()) return &found->second;
   Result<gl::Program> program = compute_program(source.name, source.file, source.files, defines_ + defines);
-  if (!program) return fail(std::move(program.error()));
+  if (!program) return fail(program);
   return &compiled_.emplace(key, std::move(*program)).first->second;
 }
 
@@ -193,7 +193,7 @@ Result<std::vector<const gl::Program*>> Programs::projections(const Variant& var
     defines += lanes;
     defines += number;
     const Result<const gl::Program*> compiled = program(source, defines);
-    if (!compiled) return fail(compiled.error());
+    if (!compiled) return fail(compiled);
     programs.push_back(*compiled);
   }
   return programs;
@@ -220,7 +220,7 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
     }
     const std::string all = splat + defines + (large ? "#define SURFCAST_LARGE\n" : "");
     const Result<const gl::Program*> compiled = program(source, all);
-    if (!compiled) return fail(compiled.error());
+    if (!compiled) return fail(compiled);
     target = *compiled;
     return {};
   };
@@ -243,7 +243,7 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
     status = compile(programs.supersample_large, "supersample.comp", true,
                      lane_defines(false) + shares(most_lanes, samples_of_large(variant)) + samples_define(variant));
   }
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return programs;
 }
 
@@ -257,13 +257,13 @@ Result<VolumePrograms> Programs::volumes(const Variant& variant, size_t volumes)
       (variant.volume_surfaces ? "#define SURFCAST_SURFACES\n" : "") + layers + several + fronts_define(variant.depth);
   const std::string name = several.empty() ? "volume.comp" : "volume.comp for several volumes";
   const Result<const gl::Program*> draw = program({name, "volume.comp"}, look);
-  if (!draw) return fail(draw.error());
+  if (!draw) return fail(draw);
   constexpr const char* kFilter = "volume_filter.comp";
   const Result<const gl::Program*> rows = program({kFilter, kFilter}, "");
-  if (!rows) return fail(rows.error());
+  if (!rows) return fail(rows);
   const Result<const gl::Program*> columns =
       program({kFilter, kFilter}, "#define SURFCAST_COLUMNS_OF_LIGHT\n" + float_define(variant) + layers);
-  if (!columns) return fail(columns.error());
+  if (!columns) return fail(columns);
   return VolumePrograms{*draw, *rows, *columns};
 }
 
@@ -288,10 +288,10 @@ Result<GaussianPrograms> Programs::gaussians(const Variant& variant, GaussianFor
                                float_define(variant) + layers_define(variant) +
                                (variant.keeps ? "#define SURFCAST_KEEPS\n" : "") + fronts_define(keeps_fronts);
   const Result<const gl::Program*> project = program({"projection of gaussian", "gaussian/project.comp"}, projection);
-  if (!project) return fail(project.error());
+  if (!project) return fail(project);
   const char* file = rays ? "gaussian/blend_rays.comp" : "gaussian/blend.comp";
   const Result<const gl::Program*> blend = program({"blending of gaussian", file}, blending);
-  if (!blend) return fail(blend.error());
+  if (!blend) return fail(blend);
   programs.project = *project;
   programs.blend = *blend;
   programs.layered = variant.layered;
@@ -319,7 +319,7 @@ Result<EllipsoidPrograms> Programs::ellipsoids(const Variant& variant, bool mapp
   const auto compile = [this](const gl::Program*& made, const char* name, const char* file,
                               const std::string& defines) -> Status {
     const Result<const gl::Program*> compiled = program({name, file}, defines);
-    if (!compiled) return fail(compiled.error());
+    if (!compiled) return fail(compiled);
     made = *compiled;
     return {};
   };
@@ -341,7 +341,7 @@ Result<EllipsoidPrograms> Programs::ellipsoids(const Variant& variant, bool mapp
     status = compile(programs.filter_columns, kFilter, kFilter,
                      samples + "#define SURFCAST_FILTERS_COLUMNS\n" + layers + written);
   }
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return programs;
 }
 
@@ -351,12 +351,12 @@ int Programs::pixels_at_once() const {
 
 Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKinds& kinds) {
   Result<std::vector<const gl::Program*>> project = projections(variant, kinds);
-  if (!project) return fail(std::move(project.error()));
+  if (!project) return fail(project);
   SplatPrograms programs;
   programs.project = std::move(*project);
   const auto compile = [this](const gl::Program*& target, const Source& source, const std::string& defines) -> Status {
     const Result<const gl::Program*> compiled = program(source, defines);
-    if (!compiled) return fail(compiled.error());
+    if (!compiled) return fail(compiled);
     target = *compiled;
     return {};
   };
@@ -394,7 +394,7 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   if (status && variant.eye_dome && !variant.layered) {
     status = compile(programs.eye_dome, plain("eye_dome.comp"), float_define(variant));
   }
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return programs;
 }  // namespace surfcast::render
 

@@ -245,7 +245,7 @@ void Renderer::State::release_models() {
 Result<Scene*> Renderer::State::scene_of(const std::shared_ptr<const model::ModelFile>& model) {
   if (const auto found = scenes.find(model->id()); found != scenes.end()) return found->second.get();
   Result<std::unique_ptr<Scene>> scene = Scene::create(model, kinds);
-  if (!scene) return fail(std::move(scene.error()));
+  if (!scene) return fail(scene);
   return scenes.emplace(model->id(), std::move(*scene)).first->second.get();
 }
 
@@ -346,7 +346,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
     const Result<std::optional<RegionStats>> stats =
         compose_region(task, programs, buffers[depth - 1], preemption, pixels);
-    if (!stats) return fail(stats.error());
+    if (!stats) return fail(stats);
     if (!*stats) {
       const std::vector<Region> halves = halves_of(part);
       if (halves.empty()) return fail(ErrorKind::kLimit, "too many surfels in four by four pixels");
@@ -386,24 +386,24 @@ Result<picture::Frame> Renderer::State::draw_part(const std::shared_ptr<const mo
     return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
   }
   Result<DisplayOptions> display = resolve_display_options(model->info(), request);
-  if (!display) return fail(display.error());
+  if (!display) return fail(display);
   if (display->volumes.points.empty() && !model->volumes().empty()) {
     display->volumes.points = preset_points(request.volumes.transfer, model->volumes().front());
   }
   if (Status status = resolve_glyphs(model->ellipsoid_sources(), request, *display); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   display->glyph_reaches = glyph_reaches(*model, request.glyphs);
   const Result<Scene*> found = scene_of(model);
-  if (!found) return fail(found.error());
+  if (!found) return fail(found);
   Scene& scene = **found;
   picture::Frame result;
   result.camera = scene.camera_of(request);
   const Result<geometry::CameraFrame> frame = geometry::make_camera_frame(result.camera, request.width, request.height);
-  if (!frame) return fail(frame.error());
+  if (!frame) return fail(frame);
   const Result<residency::PreparedView> view =
       prepare(scene, request, *display, result.camera, *frame, window, preemption);
-  if (!view) return fail(view.error());
+  if (!view) return fail(view);
 
   result.converged = view->selection.converged();
   result.nothing_pending = view->nothing_pending;
@@ -416,7 +416,7 @@ Result<picture::Frame> Renderer::State::draw_part(const std::shared_ptr<const mo
     result.image.pixels.resize(pixels * pixel_bytes(request.format));
     const Result<RegionStats> regions =
         draw_regions(scene, request, *display, *frame, *view, drawn_part, preemption, result);
-    if (!regions) return fail(regions.error());
+    if (!regions) return fail(regions);
     drawn = *regions;
   }
   result.stats = stats_of(scene, *view, drawn);
@@ -443,10 +443,10 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {
   Result<std::unique_ptr<gl::EglContext>> context = gl::EglContext::create(config.gpu);
-  if (!context) return fail(std::move(context.error()));
+  if (!context) return fail(context);
   const bool software = (*context)->software() && !config.gpu_kernels;
   Result<Programs> programs = Programs::create(software ? software_kernels() : KernelShape(), config.shader_defines);
-  if (!programs) return fail(std::move(programs.error()));
+  if (!programs) return fail(programs);
   return std::unique_ptr<Renderer>(
       new Renderer(std::make_unique<State>(config, std::move(*context), std::move(*programs))));
 }

@@ -21,7 +21,7 @@ bool some_scan_is_oriented(const model::ModelFile& model) {
 Result<std::unique_ptr<Scene>> Scene::create(const std::shared_ptr<const model::ModelFile>& model,
                                              kinds::KindTable kinds) {
   Result<std::vector<uint32_t>> numbers = kinds::find_kinds(*model, kinds);
-  if (!numbers) return fail(std::move(numbers.error()));
+  if (!numbers) return fail(numbers);
   const auto drawn_as = [&](kinds::DrawnAs form) {
     return std::ranges::any_of(*numbers, [&](uint32_t kind) { return kinds[kind]->drawn_as() == form; });
   };

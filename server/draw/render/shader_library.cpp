@@ -49,7 +49,7 @@ class Assembler {
 
 Result<std::string> shader_text(std::string_view name, std::span<const EmbeddedShader> more) {
   Assembler assembler(more);
-  if (Status status = assembler.append_file(name); !status) return fail(std::move(status.error()));
+  if (Status status = assembler.append_file(name); !status) return fail(status);
   return std::move(assembler).take();
 }
 

@@ -145,7 +145,7 @@ Result<layout::Counters> sum_up(const RegionTask& task, const Programs& programs
     bind_frame(buffers);
     glUseProgram(programs.slices().name());
   });
-  if (!summed) return fail(summed.error());
+  if (!summed) return fail(summed);
   bind_frame(buffers);
   glUseProgram(programs.bin_offsets().name());
   glDispatchCompute(1, 1, 1);
@@ -171,7 +171,7 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
     upload_constants(task, slices, buffers);
     clear_counts(task, slices, buffers);
     if (Status projected = project_kinds(task, work, variant, buffers, preemption); !projected) {
-      return fail(std::move(projected.error()));
+      return fail(projected);
     }
     const layout::Counters splats = read_counters(buffers);
     const size_t needed = size_t{splats.counts.x} + splats.counts.y;
@@ -181,7 +181,7 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
       continue;
     }
     Status counted = count_large(task, splats, programs, buffers, preemption);
-    if (!counted) return fail(std::move(counted.error()));
+    if (!counted) return fail(counted);
     return sum_up(task, programs, buffers, preemption);
   }
 }
@@ -205,7 +205,7 @@ Status add_long_list_programs(const RegionTask& task, const PictureKinds& kinds,
                               Programs& programs, RegionPrograms& region) {
   if (!has_long_lists(counters)) return {};
   Result<LongListPrograms> groups = programs.long_lists(task.variant, kinds, counters.counts.w);
-  if (!groups) return fail(groups.error());
+  if (!groups) return fail(groups);
   region.groups = *groups;
   return {};
 }
@@ -230,33 +230,32 @@ Result<std::optional<RegionStats>> draw_variant(const RegionTask& task, Programs
                                                 const Preemption& preemption) {
   const PictureKinds kinds = kinds_of(task, kinds::DrawnAs::kSurface);
   Result<SplatPrograms> variant = programs.variant(task.variant, kinds);
-  if (!variant) return fail(variant.error());
+  if (!variant) return fail(variant);
   RegionPrograms region{std::move(*variant), {}};
 
   RegionStats stats;
   const WorkStopwatch project_watch(preemption);
   const Result<layout::Counters> counters =
       project(task, plan_work(task, kinds), programs, region.lanes, buffers, preemption);
-  if (!counters) return fail(counters.error());
+  if (!counters) return fail(counters);
   if (counters->counts.z > task.list_entries) return std::optional<RegionStats>();
   if (Status status = add_long_list_programs(task, kinds, *counters, programs, region); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   stats.splats = uint64_t{counters->counts.x} + counters->counts.y;
   stats.project_ms = project_watch.milliseconds();
 
   const WorkStopwatch bin_watch(preemption);
-  if (Status status = bin(task, *counters, programs, buffers, preemption); !status)
-    return fail(std::move(status.error()));
+  if (Status status = bin(task, *counters, programs, buffers, preemption); !status) return fail(status);
   stats.bin_ms = bin_watch.milliseconds();
 
   const WorkStopwatch splat_watch(preemption);
   if (Status status = splat(task, *counters, region, programs.shape(), buffers, preemption); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   if (task.variant.silhouettes) {
     Status status = supersample_silhouettes(task, *counters, region, programs.shape(), buffers, preemption);
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
   }
   if (task.variant.eye_dome && !task.variant.layered) {
     shade_by_depth(task, *region.lanes.eye_dome, buffers);

@@ -103,7 +103,7 @@ Status draw_rays(const RegionTask& task, const Region& written, Programs& progra
   const JoinedPlan plan = plan_volumes(task, written, std::ldexp(1.0, -drawing_unit(task)), bricks_of(task));
   if (Status status = check_number(plan.constants.size()); !status) return status;
   Result<VolumePrograms> compiled = programs.volumes(task.variant, room_for_volumes(plan.constants.size()));
-  if (!compiled) return fail(std::move(compiled.error()));
+  if (!compiled) return fail(compiled);
   upload_plan(task, plan, buffers);
   const auto dispatch = [&](const gl::Program* program, int width, int height, BatchSizer& sizer) {
     return dispatch_in_batches(all_pixels(width, height), sizer, preemption, [&] { bind(task, buffers, *program); });
@@ -124,7 +124,7 @@ Result<std::optional<RegionStats>> draw_volumes(const RegionTask& task, const Pa
   const WorkStopwatch watch(preemption);
   const Region& written = task.variant.eye_dome ? task.region : task.drawn;
   if (Status status = draw_rays(between, written, programs, buffers, preemption); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   stats.splat_ms = watch.milliseconds();
   return std::optional(stats);

@@ -52,7 +52,7 @@ double pixels_of(const picture::Image& image) {
 
 Result<std::shared_ptr<VideoStream>> VideoStream::open() {
   static const Result<const VideoFunctions*> functions = load_video_functions();
-  if (!functions) return fail(functions.error());
+  if (!functions) return fail(functions);
   return std::shared_ptr<VideoStream>(new VideoStream(**functions));
 }
 
@@ -79,12 +79,12 @@ Status VideoStream::make_room(int width, int height) {
 Result<VideoPacket> VideoStream::encode(const picture::Image& image, const FrameOrder& order) {
   SURFCAST_EXPECTS(image.format == picture::PixelFormat::kSrgb8 && image.width > 0 && image.height > 0);
   const int width = std::max(image.width, order.view_width);
-  if (Status room = make_room(width, std::max(image.height, order.view_height)); !room) return fail(room.error());
+  if (Status room = make_room(width, std::max(image.height, order.view_height)); !room) return fail(room);
   const bool begins = restart_.exchange(false) || !sizes_;
   Result<CodedPicture> coded = begins ? encode_key(image, order.bytes) : encode_next(image, order.bytes);
   if (!coded) {
     restart();
-    return fail(coded.error());
+    return fail(coded);
   }
   const uint64_t before = std::exchange(last_frame_, order.frame);
   return VideoPacket{std::move(coded->bytes), coded->key, coded->key ? 0 : before};

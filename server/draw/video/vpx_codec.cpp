@@ -132,7 +132,7 @@ Result<CodedPicture> encode_image(Encoder& encoder, const picture::Image& image,
   const auto width = static_cast<unsigned>(image.width);
   const auto height = static_cast<unsigned>(image.height);
   const bool begins = key || !may_refer(encoder, width, height);
-  if (Status status = configure(encoder, width, height, quantizer); !status) return fail(status.error());
+  if (Status status = configure(encoder, width, height, quantizer); !status) return fail(status);
   Result<CodedPicture> coded = encode_planes(encoder, image, begins);
   if (!coded) return coded;
   encoder.largest_width = coded->key ? width : std::max(encoder.largest_width, width);

@@ -42,13 +42,13 @@ void swap_bytes(std::span<std::byte> values, size_t width) {
 
 Status GridReader::named(Status status) const {
   if (status) return status;
-  return fail(status.error().kind, path_.string() + ": " + status.error().message);
+  return fail_about(path_.string(), status);
 }
 
 Result<GridReader> GridReader::open(const std::filesystem::path& path, std::string_view array,
                                     std::optional<TensorOrder> order) {
   Result<stream::FilePtr> file = stream::open_shared(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   const auto error = [&path](const Error& e) { return fail(e.kind, path.string() + ": " + e.message); };
   if ((*file)->bytes().empty()) return error({ErrorKind::kInvalidInput, "the file is empty"});
   const std::optional<GridFormat> format = grid_format_of(*file);
@@ -60,7 +60,7 @@ Result<GridReader> GridReader::open(const std::filesystem::path& path, std::stri
 
 Result<GridReader> GridReader::of(const std::filesystem::path& path, StoredGrid grid) {
   GridReader reader(path, std::move(grid));
-  if (Status status = reader.named(reader.restart()); !status) return fail(std::move(status.error()));
+  if (Status status = reader.named(reader.restart()); !status) return fail(status);
   return reader;
 }
 
@@ -80,7 +80,7 @@ Status GridReader::restart() {
   position_ = 0;
   for (uint32_t i = 0; i < count; ++i) {
     Result<stream::StreamPtr> stream = grid_.open();
-    if (!stream) return fail(std::move(stream.error()));
+    if (!stream) return fail(stream);
     if ((*stream)->at_most() < bytes) {
       return fail(ErrorKind::kInvalidInput, "truncated: holds at most " + std::to_string((*stream)->at_most()) +
                                                 " of " + std::to_string(bytes) + " bytes of samples");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/ascii_text.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::grid {
@@ -28,12 +29,6 @@ std::optional<std::string_view> HeaderLines::next() {
   at_ = std::min(end + 1, text_.size());
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && scan::is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && scan::is_space(text.back())) text.remove_suffix(1);
-  return text;
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {

@@ -24,7 +24,6 @@ class HeaderLines {
   size_t at_;
 };
 
-[[nodiscard]] std::string_view trimmed(std::string_view text);
 [[nodiscard]] std::vector<std::string_view> words_of(std::string_view text);
 
 /// All words as numbers; none if one is not a number. "nan" is a number.

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "grid/readers.h"
 #include "scan/text_tokens.h"
@@ -111,7 +111,7 @@ Status place(const Keys& keys, const std::vector<uint64_t>& sizes, GridHeader& h
   const auto origin = numbers(keys, {"offset", "position", "origin"}, std::vector<double>(n, 0.0));
   const auto matrix = numbers(keys, {"transformmatrix", "rotation", "orientation"}, identity(n));
   for (const auto* part : {&spacing, &origin, &matrix}) {
-    if (!*part) return fail(part->error());
+    if (!*part) return fail(*part);
   }
   glm::dmat3 directions(1.0);
   glm::dvec3 steps(1.0);
@@ -131,8 +131,8 @@ Status place(const Keys& keys, const std::vector<uint64_t>& sizes, GridHeader& h
 Status parse_scale(const Keys& keys, GridHeader& header) {
   const auto slope = numbers(keys, {"elementtointensityfunctionslope"}, {1.0});
   const auto intercept = numbers(keys, {"elementtointensityfunctionoffset"}, {0.0});
-  if (!slope) return fail(slope.error());
-  if (!intercept) return fail(intercept.error());
+  if (!slope) return fail(slope);
+  if (!intercept) return fail(intercept);
   header.slope = slope->front();
   header.intercept = intercept->front();
   return {};
@@ -158,14 +158,14 @@ Result<GridHeader> describe(const Keys& keys) {
   header.frame = parse_frame(keys);
   header.length_unit = scan::printable(value_of(keys, {"distanceunits"}));
   const Result<std::vector<uint64_t>> sizes = parse_sizes(keys);
-  if (!sizes) return fail(sizes.error());
+  if (!sizes) return fail(sizes);
   const Result<ScalarType> type = parse_type(value_of(keys, {"elementtype"}));
-  if (!type) return fail(type.error());
+  if (!type) return fail(type);
   header.type = *type;
   for (const Status& status : {check_channels(keys), place(keys, *sizes, header), parse_scale(keys, header)}) {
-    if (!status) return fail(status.error());
+    if (!status) return fail(status);
   }
-  if (Status status = check_header(header); !status) return fail(std::move(status.error()));
+  if (Status status = check_header(header); !status) return fail(status);
   return header;
 }
 
@@ -183,7 +183,7 @@ Result<std::vector<std::filesystem::path>> listed_files(const GridFile& file, si
   while (const std::optional<std::string_view> line = lines.next()) {
     if (trimmed(*line).empty()) continue;
     Result<std::filesystem::path> path = beside(file.path, *line);
-    if (!path) return fail(std::move(path.error()));
+    if (!path) return fail(path);
     paths.push_back(std::move(*path));
   }
   return paths;
@@ -204,19 +204,19 @@ Status find_files(const MetaText& text, const GridFile& file, StoredSamples& sam
   }
   if (to_lower(scan::Tokens(name).next()) == "list") {
     Result<std::vector<std::filesystem::path>> paths = listed_files(file, text.after);
-    if (!paths) return fail(std::move(paths.error()));
+    if (!paths) return fail(paths);
     take_list(std::move(*paths), samples);
     return {};
   }
   Result<std::optional<FilePattern>> pattern = parse_pattern(file.path, name);
-  if (!pattern) return fail(std::move(pattern.error()));
+  if (!pattern) return fail(pattern);
   if (*pattern) {
     samples.files = (**pattern).count;
     samples.name = [found = std::move(**pattern)](uint64_t i) { return found.name(i); };
     return {};
   }
   Result<std::filesystem::path> path = beside(file.path, name);
-  if (!path) return fail(std::move(path.error()));
+  if (!path) return fail(path);
   take_list({std::move(*path)}, samples);
   return {};
 }
@@ -248,15 +248,15 @@ bool looks_like_meta_image(std::string_view text) {
 
 Result<StoredGrid> parse_meta_image(const GridFile& file) {
   const Result<MetaText> text = split_header(file.text());
-  if (!text) return fail(text.error());
+  if (!text) return fail(text);
   Result<GridHeader> header = describe(text->keys);
-  if (!header) return fail(std::move(header.error()));
+  if (!header) return fail(header);
   StoredSamples samples;
   samples.packing = packing_of(text->keys);
   samples.type = header->type;
   samples.bytes = header->samples() * header->sample_bytes();
-  if (Status status = find_files(*text, file, samples); !status) return fail(std::move(status.error()));
-  if (Status status = parse_skip(text->keys, samples); !status) return fail(std::move(status.error()));
+  if (Status status = find_files(*text, file, samples); !status) return fail(status);
+  if (Status status = parse_skip(text->keys, samples); !status) return fail(status);
   const bool big = is_true(value_of(text->keys, {"binarydatabyteordermsb", "elementbyteordermsb"}));
   StoredGrid grid;
   grid.header = std::move(*header);

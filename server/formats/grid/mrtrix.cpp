@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "grid/readers.h"
 #include "scan/text_tokens.h"
@@ -143,7 +143,7 @@ Result<ImageAxes> parse_axes(const Keys& keys) {
     return bad_header(kFormat, "wrong sizes of voxels", value_of(keys, "vox"));
   }
   Result<std::vector<StoredAxis>> layout = parse_layout(value_of(keys, "layout"), sizes->size());
-  if (!layout) return fail(std::move(layout.error()));
+  if (!layout) return fail(layout);
   ImageAxes axes{*sizes, *spacing, std::move(*layout)};
   while (axes.sizes.size() < 4) {
     axes.sizes.push_back(1);
@@ -217,9 +217,9 @@ Status store_samples(const Keys& keys, const GridFile& file, StoredGrid& grid) {
   FilePtr data = file.file;
   if (words[0] != ".") {
     const Result<std::filesystem::path> path = beside(file.path, words[0]);
-    if (!path) return fail(path.error());
+    if (!path) return fail(path);
     Result<FilePtr> opened = stream::open_shared(*path);
-    if (!opened) return fail(std::move(opened.error()));
+    if (!opened) return fail(opened);
     data = std::move(*opened);
     grid.data_files = 1;
     grid.data_file = [path = *path](uint64_t) { return path; };
@@ -234,17 +234,17 @@ Result<StoredGrid> describe(const Keys& keys) {
   StoredGrid grid;
   grid.header.format = kFormat;
   const Result<ImageAxes> axes = parse_axes(keys);
-  if (!axes) return fail(axes.error());
+  if (!axes) return fail(axes);
   const Result<SampleType> type = parse_type(value_of(keys, "datatype"));
-  if (!type) return fail(type.error());
+  if (!type) return fail(type);
   grid.header.type = type->type;
   grid.swapped = type->swapped;
   const Result<glm::dmat4x3> transform = parse_transform(keys);
-  if (!transform) return fail(transform.error());
-  if (Status status = take_components(*axes, grid); !status) return fail(std::move(status.error()));
+  if (!transform) return fail(transform);
+  if (Status status = take_components(*axes, grid); !status) return fail(status);
   place(*axes, *transform, grid.header);
-  if (Status status = take_scaling(keys, grid.header); !status) return fail(std::move(status.error()));
-  if (Status status = check_header(grid.header); !status) return fail(std::move(status.error()));
+  if (Status status = take_scaling(keys, grid.header); !status) return fail(status);
+  if (Status status = check_header(grid.header); !status) return fail(status);
   return grid;
 }
 
@@ -258,10 +258,10 @@ bool looks_like_mrtrix(const FilePtr& file) {
 Result<StoredGrid> parse_mrtrix(const GridFile& file) {
   const std::string head = head_of(file.file, kMaxHeader);
   const Result<Keys> keys = split_header(head);
-  if (!keys) return fail(keys.error());
+  if (!keys) return fail(keys);
   Result<StoredGrid> grid = describe(*keys);
   if (!grid) return grid;
-  if (Status status = store_samples(*keys, file, *grid); !status) return fail(std::move(status.error()));
+  if (Status status = store_samples(*keys, file, *grid); !status) return fail(status);
   return grid;
 }
 

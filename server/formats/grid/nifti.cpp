@@ -282,9 +282,9 @@ Result<StoredGrid> describe(const Fields& fields, std::optional<TensorOrder> ord
   grid.header.format = "NIfTI";
   grid.header.name = fields.description;
   const Result<ScalarType> type = type_of(fields.type);
-  if (!type) return fail(type.error());
+  if (!type) return fail(type);
   grid.header.type = *type;
-  if (Status status = read_sizes(fields, order, grid); !status) return fail(std::move(status.error()));
+  if (Status status = read_sizes(fields, order, grid); !status) return fail(status);
   place(fields, grid.header);
   if (grid.header.kind == SampleKind::kSymmetricTensor) {
     grid.header.measurement_frame = fsl_frame(grid.header.index_to_world);
@@ -294,7 +294,7 @@ Result<StoredGrid> describe(const Fields& fields, std::optional<TensorOrder> ord
     grid.header.slope = fields.slope;
     grid.header.intercept = fields.intercept;
   }
-  if (Status status = check_header(grid.header); !status) return fail(std::move(status.error()));
+  if (Status status = check_header(grid.header); !status) return fail(status);
   return grid;
 }
 
@@ -322,13 +322,13 @@ bool looks_like_packed_nifti(const FilePtr& file) {
 
 Result<StoredGrid> parse_nifti(const GridFile& file) {
   const Result<Fields> fields = read_fields(head_of(file.file));
-  if (!fields) return fail(fields.error());
+  if (!fields) return fail(fields);
   Result<StoredGrid> grid = describe(*fields, file.order);
   if (!grid) return grid;
   const Result<std::filesystem::path> path = fields->pair ? image_beside(file.path) : file.path;
-  if (!path) return fail(path.error());
+  if (!path) return fail(path);
   Result<FilePtr> image = fields->pair ? stream::open_shared(*path) : Result<FilePtr>(file.file);
-  if (!image) return fail(std::move(image.error()));
+  if (!image) return fail(image);
   StoredSamples samples;
   samples.packing = is_packed(*image) ? Packing::kInflate : Packing::kRaw;
   samples.type = grid->header.type;

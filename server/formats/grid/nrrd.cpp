@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "grid/nrrd_axes.h"
 #include "grid/nrrd_text.h"
@@ -102,7 +102,7 @@ Status find_files(const NrrdText& text, const GridFile& file, StoredSamples& sam
     return {};
   }
   Result<std::optional<FilePattern>> pattern = parse_pattern(file.path, name);
-  if (!pattern) return fail(std::move(pattern.error()));
+  if (!pattern) return fail(pattern);
   if (*pattern) {
     samples.files = (**pattern).count;
     samples.name = [found = std::move(**pattern)](uint64_t i) { return found.name(i); };
@@ -112,7 +112,7 @@ Status find_files(const NrrdText& text, const GridFile& file, StoredSamples& sam
   std::vector<std::filesystem::path> paths;
   for (const std::string& one : names) {
     Result<std::filesystem::path> path = beside(file.path, one);
-    if (!path) return fail(std::move(path.error()));
+    if (!path) return fail(path);
     paths.push_back(std::move(*path));
   }
   samples.files = paths.size();
@@ -133,20 +133,20 @@ Result<StoredGrid> describe(const NrrdFields& fields) {
   header.format = kNrrd;
   header.name = scan::printable(field(fields, "content"));
   const Result<NrrdSpace> space = parse_space(fields);
-  if (!space) return fail(space.error());
+  if (!space) return fail(space);
   const Result<ScalarType> type = parse_type(field(fields, "type"));
-  if (!type) return fail(type.error());
+  if (!type) return fail(type);
   const Result<NrrdAxes> axes = parse_axes(fields, *space);
-  if (!axes) return fail(axes.error());
+  if (!axes) return fail(axes);
   const Result<std::vector<size_t>> domain = domain_of(*axes, grid);
-  if (!domain) return fail(domain.error());
+  if (!domain) return fail(domain);
   if (domain->empty()) return fail(ErrorKind::kInvalidInput, "NRRD: no axis of space");
   header.type = *type;
   header.frame = space->frame;
   header.length_unit = scan::printable(unit_of(field(fields, fields.contains("spaceunits") ? "spaceunits" : "units")));
   header.sample_unit = scan::printable(field(fields, "sampleunits"));
-  if (Status status = place(fields, *space, *axes, *domain, header); !status) return fail(std::move(status.error()));
-  if (Status status = parse_measurement_frame(fields, header); !status) return fail(std::move(status.error()));
+  if (Status status = place(fields, *space, *axes, *domain, header); !status) return fail(status);
+  if (Status status = parse_measurement_frame(fields, header); !status) return fail(status);
   return grid;
 }
 
@@ -154,21 +154,21 @@ Result<StoredGrid> describe(const NrrdFields& fields) {
 
 Result<StoredGrid> parse_nrrd(const GridFile& file) {
   const Result<NrrdText> text = split_nrrd(file.text());
-  if (!text) return fail(text.error());
+  if (!text) return fail(text);
   Result<StoredGrid> grid = describe(text->fields);
   if (!grid) return grid;
-  if (Status status = check_header(grid->header); !status) return fail(std::move(status.error()));
+  if (Status status = check_header(grid->header); !status) return fail(status);
   StoredSamples samples;
   const Result<Packing> packing = parse_encoding(field(text->fields, "encoding"));
-  if (!packing) return fail(packing.error());
+  if (!packing) return fail(packing);
   const Result<bool> swapped = parse_endian(text->fields, grid->header.type, *packing);
-  if (!swapped) return fail(swapped.error());
+  if (!swapped) return fail(swapped);
   grid->swapped = *swapped;
   samples.packing = *packing;
   samples.type = grid->header.type;
   samples.bytes = grid->header.samples() * grid->header.sample_bytes();
-  if (Status status = parse_skips(text->fields, samples); !status) return fail(std::move(status.error()));
-  if (Status status = find_files(*text, file, samples); !status) return fail(std::move(status.error()));
+  if (Status status = parse_skips(text->fields, samples); !status) return fail(status);
+  if (Status status = find_files(*text, file, samples); !status) return fail(status);
   store(std::move(samples), *grid);
   return grid;
 }

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "scan/text_tokens.h"
 
@@ -151,16 +151,16 @@ Result<NrrdAxes> parse_axes(const NrrdFields& fields, const NrrdSpace& space) {
     return bad_header(kNrrd, "not a size for each axis", field(fields, "sizes"));
   }
   axes.sizes = std::move(*sizes);
-  if (Status status = parse_kinds(fields, axes); !status) return fail(std::move(status.error()));
+  if (Status status = parse_kinds(fields, axes); !status) return fail(status);
   for (const auto& [name, into] :
        {std::pair{"spacings", &axes.spacings}, {"axismins", &axes.mins}, {"axismaxs", &axes.maxs}}) {
     Result<std::vector<double>> numbers = per_axis(fields, name, axes.sizes.size());
-    if (!numbers) return fail(std::move(numbers.error()));
+    if (!numbers) return fail(numbers);
     *into = std::move(*numbers);
   }
   if (!fields.contains("spacedirections")) return axes;
   auto directions = parse_vectors(field(fields, "spacedirections"), space.dimension);
-  if (!directions) return fail(std::move(directions.error()));
+  if (!directions) return fail(directions);
   if (directions->size() != axes.sizes.size()) {
     return bad_header(kNrrd, "not a direction for each axis", field(fields, "spacedirections"));
   }
@@ -181,7 +181,7 @@ Result<std::vector<size_t>> domain_of(const NrrdAxes& axes, StoredGrid& grid) {
       continue;
     }
     const Result<SampleKind> kind = kind_of_axis(axes, axis);
-    if (!kind) return fail(kind.error());
+    if (!kind) return fail(kind);
     if (*kind == SampleKind::kScalar) continue;
     const bool last = axis + 1 == axes.sizes.size();
     if (grid.header.kind != SampleKind::kScalar || (axis > 0 && !last)) {
@@ -212,7 +212,7 @@ Status place(const NrrdFields& fields, const NrrdSpace& space, const NrrdAxes& a
   if (!axes.directions.empty()) origin = glm::dvec3(0);
   if (const std::string_view text = field(fields, "spaceorigin"); !text.empty()) {
     const auto vectors = parse_vectors(text, space.dimension);
-    if (!vectors) return fail(vectors.error());
+    if (!vectors) return fail(vectors);
     if (vectors->size() != 1 || !vectors->front()) return bad_header(kNrrd, "not an origin", text);
     origin = *vectors->front();
   }
@@ -224,7 +224,7 @@ Status parse_measurement_frame(const NrrdFields& fields, GridHeader& header) {
   const std::string_view text = field(fields, "measurementframe");
   if (text.empty()) return {};
   const auto vectors = parse_vectors(text, 3);
-  if (!vectors) return fail(vectors.error());
+  if (!vectors) return fail(vectors);
   if (vectors->size() != 3 || !(*vectors)[0] || !(*vectors)[1] || !(*vectors)[2]) {
     return bad_header(kNrrd, "not a measurement frame", text);
   }

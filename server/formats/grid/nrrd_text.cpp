@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "scan/text_tokens.h"
 

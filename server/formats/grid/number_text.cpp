@@ -27,7 +27,7 @@ Result<std::string_view> NumberText::next_word() {
     }
     std::memmove(text_.data(), text_.data() + used_, size);
     const auto read = source_->read(std::as_writable_bytes(std::span(text_).subspan(size)));
-    if (!read) return fail(read.error());
+    if (!read) return fail(read);
     used_ = *read == 0 ? size : 0;
     filled_ = size + *read;
     if (*read == 0) return std::string_view(text_.data(), size);
@@ -36,7 +36,7 @@ Result<std::string_view> NumberText::next_word() {
 
 Status NumberText::parse_next() {
   const Result<std::string_view> word = next_word();
-  if (!word) return fail(word.error());
+  if (!word) return fail(word);
   if (word->empty()) return fail(ErrorKind::kInvalidInput, "truncated: the numbers end too early");
   return scan::with_type(type_, [&](auto zero) -> Status {
     const auto number = scan::parse_number<decltype(zero)>(*word);
@@ -55,7 +55,7 @@ Result<size_t> NumberText::read(std::span<std::byte> out) {
   while (done < out.size()) {
     if (value_used_ == value_size_) {
       if (left_ == 0) break;
-      if (Status status = parse_next(); !status) return fail(std::move(status.error()));
+      if (Status status = parse_next(); !status) return fail(status);
       --left_;
     }
     const size_t part = std::min(value_size_ - value_used_, out.size() - done);

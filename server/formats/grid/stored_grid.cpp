@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "grid/number_text.h"
 #include "scan/text_tokens.h"
@@ -49,13 +50,13 @@ StreamPtr unpacked(Packing packing, StreamPtr packed) {
 /// The samples of one file.
 Result<StreamPtr> open_share(const StoredSamples& samples, const FilePtr& file, uint64_t share) {
   const Result<uint64_t> offset = skip_lines(file, samples.offset, samples.line_skip);
-  if (!offset) return fail(offset.error());
+  if (!offset) return fail(offset);
   if (samples.packing == Packing::kRaw) return open_raw(samples, file, *offset, share);
   if (samples.byte_skip < 0) {
     return fail(ErrorKind::kUnsupported, "a byte skip of -1 is for raw data only");
   }
   StreamPtr stream = unpacked(samples.packing, std::make_unique<stream::MappedStream>(file, *offset));
-  if (Status skipped = stream->skip(static_cast<uint64_t>(samples.byte_skip)); !skipped) return fail(skipped.error());
+  if (Status skipped = stream->skip(static_cast<uint64_t>(samples.byte_skip)); !skipped) return fail(skipped);
   if (samples.packing == Packing::kText) {
     stream = std::make_unique<NumberText>(std::move(stream), samples.type, share / scan::size_of(samples.type));
   }
@@ -72,7 +73,7 @@ class FileChain final : public stream::ByteStream {
     size_t done = 0;
     while (done < out.size() && (left_ > 0 || next_ < samples_.files)) {
       if (left_ == 0) {
-        if (Status status = open_next(); !status) return fail(std::move(status.error()));
+        if (Status status = open_next(); !status) return fail(status);
       }
       const std::span part = out.subspan(done, std::min<uint64_t>(out.size() - done, left_));
       if (Status status = stream::read_exactly(*current_, part); !status) return named(status.error());
@@ -90,7 +91,7 @@ class FileChain final : public stream::ByteStream {
   Status open_next() {
     current_path_ = samples_.name(next_);
     Result<FilePtr> file = stream::open_shared(current_path_);
-    if (!file) return fail(std::move(file.error()));
+    if (!file) return fail(file);
     Result<StreamPtr> stream = open_share(samples_, *file, share_);
     if (!stream) return named(stream.error());
     current_ = std::move(*stream);
@@ -150,8 +151,8 @@ void store(StoredSamples samples, StoredGrid& grid) {
 Result<StreamPtr> open_samples(const StoredSamples& samples) {
   if (samples.file) return open_share(samples, samples.file, samples.bytes);
   const Result<uint64_t> share = share_of(samples);
-  if (!share) return fail(share.error());
-  if (Status status = check_files(samples, *share); !status) return fail(std::move(status.error()));
+  if (!share) return fail(share);
+  if (Status status = check_files(samples, *share); !status) return fail(status);
   return std::make_unique<FileChain>(samples, *share);
 }
 
@@ -208,7 +209,7 @@ Result<std::optional<FilePattern>> parse_pattern(const std::filesystem::path& he
     return fail(ErrorKind::kInvalidInput, "the range of data files is empty: " + scan::printable(text));
   }
   const Result<std::filesystem::path> path = beside(header, words[0]);
-  if (!path) return fail(path.error());
+  if (!path) return fail(path);
   pattern->folder = header.parent_path();
   pattern->first = *first;
   pattern->step = *step;

@@ -29,7 +29,7 @@ Result<size_t> choose_array(const std::vector<VtkArray>& arrays, std::string_vie
     if (found == arrays.end()) found = find([](const VtkArray& array) { return kind_of(array).has_value(); });
     if (found == arrays.end()) found = arrays.begin();
   }
-  if (const Result<SampleKind> kind = kind_of(*found); !kind) return fail(kind.error());
+  if (const Result<SampleKind> kind = kind_of(*found); !kind) return fail(kind);
   return static_cast<size_t>(found - arrays.begin());
 }
 

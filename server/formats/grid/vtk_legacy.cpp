@@ -19,10 +19,10 @@ Result<GridHeader> describe(const LegacyFile& file, const LegacyArray& array) {
   header.name = scan::printable(array.facts.name);
   header.type = array.numbers.type;
   const Result<SampleKind> kind = kind_of(array.facts);
-  if (!kind) return fail(kind.error());
+  if (!kind) return fail(kind);
   header.kind = *kind;
   place_samples(file.dimensions, affine(glm::dmat3(1.0), file.spacing, file.origin), array.facts.of_cells, header);
-  if (Status status = check_header(header); !status) return fail(std::move(status.error()));
+  if (Status status = check_header(header); !status) return fail(status);
   if (header.samples() * header.components() != array.numbers.count) {
     return fail(ErrorKind::kInvalidInput, "VTK: the array " + header.name + " does not have a value for each sample");
   }
@@ -34,14 +34,14 @@ Result<GridHeader> describe(const LegacyFile& file, const LegacyArray& array) {
 Result<StoredGrid> parse_vtk_legacy(const GridFile& file) {
   static constexpr std::array<std::string_view, 1> kGrids{"structured_points"};
   const Result<LegacyFile> grid = scan_vtk_legacy(file.text(), kGrids);
-  if (!grid) return fail(grid.error());
+  if (!grid) return fail(grid);
   std::vector<VtkArray> facts;
   for (const LegacyArray& array : grid->arrays) facts.push_back(array.facts);
   const Result<size_t> chosen = choose_array(facts, file.array);
-  if (!chosen) return fail(chosen.error());
+  if (!chosen) return fail(chosen);
   const LegacyArray& array = grid->arrays[*chosen];
   Result<GridHeader> header = describe(*grid, array);
-  if (!header) return fail(std::move(header.error()));
+  if (!header) return fail(header);
   StoredSamples samples;
   samples.packing = grid->binary ? Packing::kRaw : Packing::kText;
   samples.type = header->type;

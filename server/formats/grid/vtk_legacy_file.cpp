@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "scan/text_tokens.h"
 #include "stream/byte_stream.h"
@@ -63,7 +63,7 @@ class LegacyParser {
     if (encoding != "ascii" && encoding != "binary") return bad_header(kFormat, "neither ASCII nor BINARY", encoding);
     file_.binary = encoding == "binary";
     while (const std::optional<std::string_view> line = lines_.next()) {
-      if (Status status = parse_line(*line); !status) return fail(std::move(status.error()));
+      if (Status status = parse_line(*line); !status) return fail(status);
     }
     if (!has_dataset_) return fail(ErrorKind::kInvalidInput, "truncated: VTK file without a data set");
     return std::move(file_);
@@ -111,7 +111,7 @@ class LegacyParser {
     const auto count = scan::parse_number<uint64_t>(word(words, 1));
     const Result<ScalarType> type = parse_type(word(words, 2));
     if (!count) return bad_header(kFormat, "no number of points", line);
-    if (!type) return fail(type.error());
+    if (!type) return fail(type);
     file_.points = {*type, stream::saturating(*count, 3, 0), lines_.offset()};
     return skip_numbers(file_.points.count, *type);
   }
@@ -122,7 +122,7 @@ class LegacyParser {
     const auto second = scan::parse_number<uint64_t>(word(words, 2));
     if (keyword == "offsets" || keyword == "connectivity") {
       const Result<ScalarType> type = parse_type(word(words, 1));
-      if (!type) return fail(type.error());
+      if (!type) return fail(type);
       return skip_numbers(keyword == "offsets" ? offsets_ : connectivity_, *type);
     }
     if (!first) return bad_header(kFormat, "no number of cells", line);
@@ -244,7 +244,7 @@ class LegacyParser {
     const auto count = scan::parse_number<uint64_t>(components);
     const Result<ScalarType> type = parse_type(type_name);
     if (!count || *count == 0) return bad_header(kFormat, "no number of components", line);
-    if (!type) return fail(type.error());
+    if (!type) return fail(type);
     const VtkNumbers numbers{*type, stream::saturating(*count, tuples, 0), lines_.offset()};
     if (Status status = skip_numbers(numbers.count, *type); !status) return status;
     if (!in_data_ || tuples != tuples_) return {};

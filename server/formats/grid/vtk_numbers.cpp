@@ -26,8 +26,8 @@ Result<StreamPtr> StoredNumbers::open() const {
 Result<std::optional<uint64_t>> StoredNumbers::in_file() const {
   if (text || base64 || coding.compressed) return std::nullopt;
   const Result<StreamPtr> stream = open();
-  if (!stream) return fail(stream.error());
-  if (Status status = check_holds(**stream, bytes()); !status) return fail(std::move(status.error()));
+  if (!stream) return fail(stream);
+  if (Status status = check_holds(**stream, bytes()); !status) return fail(status);
   const uint64_t header = coding.wide ? sizeof(uint64_t) : sizeof(uint32_t);
   return begin + (headed ? header : 0);
 }

@@ -52,7 +52,7 @@ Result<uint64_t> points_of_piece(const XmlFile& file, const Attributes& piece) {
     return *points;
   }
   const Result<VtkExtent> extent = parse_vtk_extent(attribute(piece, "Extent"));
-  if (!extent) return fail(extent.error());
+  if (!extent) return fail(extent);
   const std::array<uint64_t, 3> points = extent->points();
   return stream::saturating(stream::saturating(points[0], points[1], 0), points[2], 0);
 }
@@ -74,7 +74,7 @@ Status add_array(const XmlFile& file, const XmlArray& array, const stream::FileP
   const uint64_t values = stream::saturating(piece.points, facts.components, 0);
   Result<StoredNumbers> numbers = find_numbers(file, array, source, values);
   if (!numbers) {
-    if (numbers.error().kind == ErrorKind::kUnsupported) return fail(numbers.error());  // the coding of all arrays
+    if (numbers.error().kind == ErrorKind::kUnsupported) return fail(numbers);  // the coding of all arrays
     return fail(numbers.error().kind, numbers.error().message + ", in the array " + scan::printable(facts.name));
   }
   if (positions) {
@@ -89,7 +89,7 @@ Status add_array(const XmlFile& file, const XmlArray& array, const stream::FileP
 
 Result<VtkPointSet> find_legacy_points(const stream::FilePtr& file) {
   const Result<LegacyFile> legacy = scan_vtk_legacy(scan::as_text(file->bytes()), kVtkPointSets);
-  if (!legacy) return fail(legacy.error());
+  if (!legacy) return fail(legacy);
   VtkPointSet set;
   set.cells = legacy->cells;
   PointPiece piece;
@@ -113,11 +113,11 @@ Result<VtkPointSet> find_legacy_points(const stream::FilePtr& file) {
 
 Result<VtkPointSet> find_xml_points(const stream::FilePtr& file) {
   const Result<XmlFile> tree = parse_vtk_xml_tree(scan::as_text(file->bytes()));
-  if (!tree) return fail(tree.error());
+  if (!tree) return fail(tree);
   VtkPointSet set;
   for (const XmlPiece& piece : tree->pieces) {
     const Result<uint64_t> points = points_of_piece(*tree, piece.attributes);
-    if (!points) return fail(points.error());
+    if (!points) return fail(points);
     set.cells = stream::saturating(1, set.cells, cells_of(piece.attributes));
     set.pieces.push_back({*points, {}, {}});
   }
@@ -126,7 +126,7 @@ Result<VtkPointSet> find_xml_points(const stream::FilePtr& file) {
     if (array.section == XmlSection::kCellData) {
       set.left_out.insert(facts_of(*tree, array).name + " of the cells");
     } else if (piece.points > 0) {  // writers leave the arrays of empty pieces empty
-      if (Status status = add_array(*tree, array, file, piece, set); !status) return fail(std::move(status.error()));
+      if (Status status = add_array(*tree, array, file, piece, set); !status) return fail(status);
     }
   }
   return set;

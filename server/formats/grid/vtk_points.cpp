@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "grid/vtk_legacy_file.h"
 #include "grid/vtk_point_set.h"
@@ -146,7 +146,7 @@ Result<VtkPointSet> find_points(const stream::FilePtr& file) {
   for (const PointArray& array : set->pieces.front().arrays) {
     columns = stream::saturating(1, columns, array.facts.components);
   }
-  if (Status status = scan::check_column_count(columns); !status) return fail(std::move(status.error()));
+  if (Status status = scan::check_column_count(columns); !status) return fail(status);
   keep_common_arrays(*set);
   return set;
 }
@@ -236,10 +236,10 @@ tl::unexpected<Error> in_array(const Error& error, std::string_view name) {
 /// Reads numbers that are not in the file as they are. `left`: memory, which becomes less.
 Result<std::vector<std::byte>> decode(const StoredNumbers& numbers, uint64_t& left) {
   const Result<stream::StreamPtr> stream = numbers.open();
-  if (!stream) return fail(stream.error());
+  if (!stream) return fail(stream);
   const uint64_t bytes = numbers.bytes();
-  if (Status status = check_holds(**stream, bytes); !status) return fail(std::move(status.error()));
-  if (Status status = scan::DecodingLimit{left}.check(bytes); !status) return fail(std::move(status.error()));
+  if (Status status = check_holds(**stream, bytes); !status) return fail(status);
+  if (Status status = scan::DecodingLimit{left}.check(bytes); !status) return fail(status);
   left -= bytes;
   std::vector<std::byte> decoded;
   decoded.reserve(bytes);
@@ -248,7 +248,7 @@ Result<std::vector<std::byte>> decode(const StoredNumbers& numbers, uint64_t& le
     const size_t before = decoded.size();
     decoded.resize(std::min<uint64_t>(bytes, before + kDecodedAtOnce));
     Status status = read_exactly(**stream, std::span(decoded).subspan(before));
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
   }
   return decoded;
 }
@@ -266,11 +266,11 @@ Result<LoadedNumbers> load_numbers(const StoredNumbers& numbers, std::string_vie
 Status load_piece(const PointPiece& piece, uint64_t& left, VtkPointRows& rows) {
   LoadedPiece loaded{piece.points, {}};
   Result<LoadedNumbers> numbers = load_numbers(piece.positions, "coordinates", left, rows);
-  if (!numbers) return fail(std::move(numbers.error()));
+  if (!numbers) return fail(numbers);
   loaded.arrays.push_back(*numbers);
   for (const PointArray& array : piece.arrays) {
     numbers = load_numbers(array.numbers, array.facts.name, left, rows);
-    if (!numbers) return fail(std::move(numbers.error()));
+    if (!numbers) return fail(numbers);
     loaded.arrays.push_back(*numbers);
   }
   rows.add(std::move(loaded));
@@ -291,7 +291,7 @@ Status check_vtk_points(const stream::FilePtr& file) {
 
 Result<std::unique_ptr<scan::RowSource>> vtk_point_rows(const stream::FilePtr& file, const scan::DecodingLimit& limit) {
   const Result<VtkPointSet> set = find_points(file);
-  if (!set) return fail(set.error());
+  if (!set) return fail(set);
   const PointPiece& first = set->pieces.front();
   std::vector<ArrayShape> shapes{{first.positions.type, 3}};
   for (const PointArray& array : first.arrays) shapes.push_back({array.numbers.type, array.facts.components});
@@ -300,7 +300,7 @@ Result<std::unique_ptr<scan::RowSource>> vtk_point_rows(const stream::FilePtr& f
   auto rows = std::make_unique<VtkPointRows>(file, std::move(traits), columns_of(first), std::move(shapes));
   uint64_t left = limit.max_bytes;
   for (const PointPiece& piece : set->pieces) {
-    if (Status status = load_piece(piece, left, *rows); !status) return fail(std::move(status.error()));
+    if (Status status = load_piece(piece, left, *rows); !status) return fail(status);
   }
   return rows;
 }

@@ -25,7 +25,7 @@ Result<glm::dmat4x3> parse_affine(const Attributes& image) {
   const auto spacing = parse_numbers(attribute(image, "Spacing"), {1, 1, 1});
   const auto direction = parse_numbers(attribute(image, "Direction"), {1, 0, 0, 0, 1, 0, 0, 0, 1});
   for (const auto* part : {&origin, &spacing, &direction}) {
-    if (!*part) return fail(part->error());
+    if (!*part) return fail(*part);
   }
   glm::dmat3 axes(1.0);
   for (int column = 0; column < 3; ++column) {
@@ -53,11 +53,11 @@ Result<VtkExtent> find_extent(const XmlFile& image) {
 
 Result<GridHeader> describe(const XmlFile& image, const VtkArray& facts, const XmlArray& array) {
   const Result<VtkExtent> extent = find_extent(image);
-  if (!extent) return fail(extent.error());
+  if (!extent) return fail(extent);
   Result<glm::dmat4x3> of_points = parse_affine(image.data_set);
-  if (!of_points) return fail(std::move(of_points.error()));
+  if (!of_points) return fail(of_points);
   const Result<ScalarType> type = xml_type_of(array);
-  if (!type) return fail(type.error());
+  if (!type) return fail(type);
   GridHeader header;
   header.format = kFormat;
   header.name = scan::printable(facts.name);
@@ -67,7 +67,7 @@ Result<GridHeader> describe(const XmlFile& image, const VtkArray& facts, const X
     (*of_points)[3] += (*of_points)[static_cast<int>(axis)] * static_cast<double>(extent->first[axis]);
   }
   place_samples(extent->points(), *of_points, facts.of_cells, header);
-  if (Status status = check_header(header); !status) return fail(std::move(status.error()));
+  if (Status status = check_header(header); !status) return fail(status);
   return header;
 }
 
@@ -75,17 +75,17 @@ Result<GridHeader> describe(const XmlFile& image, const VtkArray& facts, const X
 
 Result<StoredGrid> parse_vtk_xml(const GridFile& file) {
   const Result<XmlFile> image = parse_vtk_xml_tree(file.text());
-  if (!image) return fail(image.error());
-  if (const Result<VtkExtent> extent = find_extent(*image); !extent) return fail(extent.error());
+  if (!image) return fail(image);
+  if (const Result<VtkExtent> extent = find_extent(*image); !extent) return fail(extent);
   std::vector<VtkArray> facts;
   for (const XmlArray& array : image->arrays) facts.push_back(facts_of(*image, array));
   const Result<size_t> chosen = choose_array(facts, file.array);
-  if (!chosen) return fail(chosen.error());
+  if (!chosen) return fail(chosen);
   const XmlArray& array = image->arrays[*chosen];
   Result<GridHeader> header = describe(*image, facts[*chosen], array);
-  if (!header) return fail(std::move(header.error()));
+  if (!header) return fail(header);
   Result<StoredNumbers> numbers = find_numbers(*image, array, file.file, header->samples() * header->components());
-  if (!numbers) return fail(std::move(numbers.error()));
+  if (!numbers) return fail(numbers);
   StoredGrid grid;
   grid.header = std::move(*header);
   grid.swapped = numbers->swapped();

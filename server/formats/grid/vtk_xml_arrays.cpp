@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "grid/header_text.h"
 #include "scan/text_tokens.h"
 
@@ -100,7 +100,7 @@ Result<scan::ScalarType> xml_type_of(const XmlArray& array) {
 Result<StoredNumbers> find_numbers(const XmlFile& file, const XmlArray& array, const stream::FilePtr& source,
                                    uint64_t values) {
   const Result<scan::ScalarType> type = xml_type_of(array);
-  if (!type) return fail(type.error());
+  if (!type) return fail(type);
   StoredNumbers numbers;
   numbers.file = source;
   numbers.type = *type;
@@ -111,10 +111,10 @@ Result<StoredNumbers> find_numbers(const XmlFile& file, const XmlArray& array, c
   numbers.text = format == "ascii";
   if (numbers.text) return numbers;  // the coding is that of bytes
   const Result<VtkBlockCoding> coding = parse_coding(file);
-  if (!coding) return fail(coding.error());
+  if (!coding) return fail(coding);
   numbers.coding = *coding;
   if (format == "appended") {
-    if (Status status = find_appended(file, array, numbers); !status) return fail(std::move(status.error()));
+    if (Status status = find_appended(file, array, numbers); !status) return fail(status);
     return numbers;
   }
   if (format != "binary") return bad_header(kFormat, "format of an array not supported", format);

@@ -43,7 +43,7 @@ class TreeParser {
     }
     if (has_document_type_) return fail(ErrorKind::kInvalidInput, "VTK: XML with a document type");
     if (file_.appended) {
-      if (Status status = find_appended(); !status) return fail(std::move(status.error()));
+      if (Status status = find_appended(); !status) return fail(status);
     }
     return std::move(file_);
   }

@@ -97,7 +97,7 @@ Status check_chunk(const Chunk& chunk, size_t record_length, size_t end) {
 Result<std::vector<Chunk>> read_chunk_table(std::span<const std::byte> file, const PointData& points,
                                             uint32_t chunk_size) {
   const Result<size_t> offset = table_offset(file, points.offset);
-  if (!offset) return fail(offset.error());
+  if (!offset) return fail(offset);
   const auto version = load<uint32_t>(&file[*offset]);
   if (version != 0) {
     return fail(ErrorKind::kUnsupported, "LAZ chunk table version " + std::to_string(version) + " is not supported");
@@ -105,13 +105,13 @@ Result<std::vector<Chunk>> read_chunk_table(std::span<const std::byte> file, con
   const auto number = load<uint32_t>(&file[*offset + 4]);
   const size_t data_bytes = *offset - points.offset - kOffsetBytes;
   if (Status status = check_number_of_chunks(number, points, chunk_size, data_bytes); !status) {
-    return fail(status.error());
+    return fail(status);
   }
   std::vector<Chunk> chunks(number);
   EntryDecoder entries(file.subspan(*offset + kTableHeaderBytes), chunk_size);
   std::generate(chunks.begin(), chunks.end(), [&entries] { return entries.next(); });
   if (entries.damaged()) return invalid_input("the LAZ chunk table is damaged");
-  if (Status status = place_chunks(chunks, points, *offset); !status) return fail(status.error());
+  if (Status status = place_chunks(chunks, points, *offset); !status) return fail(status);
   return chunks;
 }
 

@@ -94,14 +94,14 @@ Status check_coder(std::span<const std::byte> body, bool layered) {
 
 Result<LaszipRecord> parse_laszip_record(std::span<const std::byte> body, const RecordLayout& layout) {
   if (body.size() < kFixedBytes) return fail(ErrorKind::kInvalidInput, "truncated: the LASzip record is too short");
-  if (Status status = check_coder(body, layout.layered); !status) return fail(status.error());
+  if (Status status = check_coder(body, layout.layered); !status) return fail(status);
   const std::vector<Item> items = parse_items(body);
   const std::vector<Item> expected = expected_items(layout);
   if (items.size() != expected.size()) {
     return fail(ErrorKind::kInvalidInput, "the LAZ items do not fit the point format");
   }
   for (size_t i = 0; i < items.size(); ++i) {
-    if (Status status = check_item(items[i], expected[i], layout.layered); !status) return fail(status.error());
+    if (Status status = check_item(items[i], expected[i], layout.layered); !status) return fail(status);
   }
   LaszipRecord record;
   record.chunk_size = load<uint32_t>(&body[12]);

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "scan/point_table.h"
 #include "scan/readers.h"
 #include "scan/text_tokens.h"
@@ -88,19 +88,19 @@ Result<double> first_of(const HeaderValues& values, Name corner, Name middle, do
 
 Result<GridHeader> read_header(Tokens& tokens) {
   const Result<HeaderValues> values = read_values(tokens);
-  if (!values) return fail(values.error());
+  if (!values) return fail(values);
   const Result<uint64_t> columns = count_of(*values, kColumns);
-  if (!columns) return fail(columns.error());
+  if (!columns) return fail(columns);
   const Result<uint64_t> rows = count_of(*values, kRows);
-  if (!rows) return fail(rows.error());
+  if (!rows) return fail(rows);
   const Result<double> step_x = step_of(*values, kStepX);
-  if (!step_x) return fail(step_x.error());
+  if (!step_x) return fail(step_x);
   const Result<double> step_y = step_of(*values, kStepY);
-  if (!step_y) return fail(step_y.error());
+  if (!step_y) return fail(step_y);
   const Result<double> x = first_of(*values, kLeft, kLeftMiddle, *step_x);
-  if (!x) return fail(x.error());
+  if (!x) return fail(x);
   const Result<double> y = first_of(*values, kBottom, kBottomMiddle, *step_y);
-  if (!y) return fail(y.error());
+  if (!y) return fail(y);
   return GridHeader{*columns, *rows, {*x, *y}, {*step_x, *step_y}, values->at(kNoValue)};
 }
 
@@ -115,7 +115,7 @@ Result<double> next_height(Tokens& tokens) {
 Result<bool> any_value(Tokens tokens, const GridHeader& header) {
   for (uint64_t i = 0; i < header.columns * header.rows; ++i) {
     const Result<double> height = next_height(tokens);
-    if (!height) return fail(height.error());
+    if (!height) return fail(height);
     if (header.has_value(*height)) return true;
   }
   return false;
@@ -184,7 +184,7 @@ class AsciiGridRows : public RowSource {
     std::vector<double> points;
     for (uint64_t i = 0; i < run.cells; ++i) {
       const Result<double> height = next_height(run.start);
-      if (!height) return fail(height.error());
+      if (!height) return fail(height);
       if (!header_.has_value(*height)) continue;
       const glm::dvec2 middle = header_.middle(run.first + i);
       points.insert(points.end(), {middle.x, middle.y, *height});
@@ -226,11 +226,11 @@ Result<std::unique_ptr<RowSource>> ascii_grid_rows(std::span<const std::byte> by
                                                    const std::filesystem::path& path) {
   Tokens tokens(as_text(bytes));
   const Result<GridHeader> header = read_header(tokens);
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   Result<std::vector<CellRun>> runs = find_runs(tokens, *header);
-  if (!runs) return fail(std::move(runs.error()));
+  if (!runs) return fail(runs);
   const Result<bool> any = any_value(tokens, *header);
-  if (!any) return fail(any.error());
+  if (!any) return fail(any);
   if (!*any) return fail(ErrorKind::kInvalidInput, "has no points");
   RowTraits traits;
   read_system(projection_file(path), traits);

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 
 namespace surfcast::scan {
 namespace {

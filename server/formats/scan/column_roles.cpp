@@ -64,7 +64,7 @@ Status check_column_count(uint64_t columns) {
 }
 
 Result<ColumnRoles> assign_roles(std::span<const ColumnInfo> columns, const std::vector<bool>& absent) {
-  if (Status status = check_column_count(columns.size()); !status) return fail(std::move(status.error()));
+  if (Status status = check_column_count(columns.size()); !status) return fail(status);
   NamedColumns named = name_columns(columns, absent);
   const auto position = take_triple(named, "x", "y", "z");
   if (!position) return fail(ErrorKind::kInvalidInput, "has no x, y and z for its points");

@@ -54,11 +54,11 @@ class HierarchyWalk {
     while (!pages_.empty()) {
       const std::vector<ByteRange> pages = std::exchange(pages_, {});
       for (const ByteRange& page : pages) {
-        if (Status status = check(page); !status) return fail(status.error());
+        if (Status status = check(page); !status) return fail(status);
       }
       file_.prefetch(pages);
       for (const ByteRange& page : pages) {
-        if (Status status = read(page); !status) return fail(status.error());
+        if (Status status = read(page); !status) return fail(status);
       }
     }
     return std::move(nodes_);

@@ -130,14 +130,14 @@ bool is_mesh(std::span<const std::byte> bytes) {
 
 Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes, const DecodingLimit& limit) try {
   // Draco's copy of the points exists until the table is complete, hence the factor of 2.
-  if (Status status = limit.check(2 * draco_decoded_bytes(bytes)); !status) return fail(std::move(status.error()));
+  if (Status status = limit.check(2 * draco_decoded_bytes(bytes)); !status) return fail(status);
   const Result<std::unique_ptr<draco::PointCloud>> cloud = decode(bytes);
-  if (!cloud) return fail(cloud.error());
+  if (!cloud) return fail(cloud);
   std::vector<ColumnInfo> columns;
   PointTable table;
   table.rows = (*cloud)->num_points();
   for (int id = 0; id < (*cloud)->num_attributes(); ++id) {
-    if (Status status = add_attribute(**cloud, id, columns, table); !status) return fail(std::move(status.error()));
+    if (Status status = add_attribute(**cloud, id, columns, table); !status) return fail(status);
   }
   RowTraits traits;
   traits.may_be_graphics = is_mesh(bytes);  // meshes come from graphics, y-up; points come from scanners, z-up

@@ -5,18 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/ascii_text.h"
 #include "base/invalid_input.h"
 #include "scan/text_tokens.h"
 #include "scan/xml_tree.h"
 
 namespace surfcast::scan {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// A number in an attribute. Missing or empty: `otherwise`.
 template <typename T>
@@ -40,8 +35,8 @@ Status read_limits(const XmlNode& node, E57Field& field) {
   using Limits = std::numeric_limits<int64_t>;
   const Result<int64_t> low = attribute_of<int64_t>(node, "minimum", Limits::min());
   const Result<int64_t> high = attribute_of<int64_t>(node, "maximum", Limits::max());
-  if (!low) return fail(low.error());
-  if (!high) return fail(high.error());
+  if (!low) return fail(low);
+  if (!high) return fail(high);
   if (*low > *high) return invalid_input("E57 field " + printable(node.name) + " has a minimum above its maximum");
   field.minimum = *low;
   field.maximum = *high;
@@ -52,8 +47,8 @@ Status read_limits(const XmlNode& node, E57Field& field) {
 Status read_scale(const XmlNode& node, E57Field& field) {
   const Result<double> scale = attribute_of<double>(node, "scale", 1);
   const Result<double> offset = attribute_of<double>(node, "offset", 0);
-  if (!scale) return fail(scale.error());
-  if (!offset) return fail(offset.error());
+  if (!scale) return fail(scale);
+  if (!offset) return fail(offset);
   field.scale = *scale;
   field.offset = *offset;
   return {};
@@ -79,8 +74,8 @@ Result<E57Field> parse_field(const XmlNode& node) {
     return fail(ErrorKind::kUnsupported, "E57 field " + printable(node.name) + " has a type that is not supported");
   }
   field.coding = scaled ? E57Coding::kScaled : E57Coding::kInteger;
-  if (Status status = read_limits(node, field); !status) return fail(status.error());
-  if (Status status = scaled ? read_scale(node, field) : Status(); !status) return fail(status.error());
+  if (Status status = read_limits(node, field); !status) return fail(status);
+  if (Status status = scaled ? read_scale(node, field) : Status(); !status) return fail(status);
   return field;
 }
 
@@ -130,13 +125,13 @@ Result<E57Scan> parse_scan(const XmlNode& node) {
   if (const XmlNode* name = node.child("name")) scan.name = printable(name->text);
   const Result<uint64_t> section = attribute_of<uint64_t>(*points, "fileOffset", 0);
   const Result<uint64_t> count = attribute_of<uint64_t>(*points, "recordCount", 0);
-  if (!section) return fail(section.error());
-  if (!count) return fail(count.error());
+  if (!section) return fail(section);
+  if (!count) return fail(count);
   scan.section = *section;
   scan.count = *count;
   for (const XmlNode& child : prototype->children) {
     Result<E57Field> field = parse_field(child);
-    if (!field) return fail(std::move(field.error()));
+    if (!field) return fail(field);
     scan.fields.push_back(std::move(*field));
   }
   if (const XmlNode* pose = node.child("pose")) scan.pose = parse_pose(*pose);
@@ -146,10 +141,10 @@ Result<E57Scan> parse_scan(const XmlNode& node) {
 
 Result<XmlNode> read_xml(const E57Pages& pages) {
   const Result<uint64_t> at = pages.logical(pages.xml_offset());
-  if (!at) return fail(at.error());
+  if (!at) return fail(at);
   if (pages.xml_size() > pages.size() - *at) return invalid_input("truncated: the E57 file ends within its XML");
   std::vector<std::byte> bytes(pages.xml_size());
-  if (Status status = pages.read(*at, bytes); !status) return fail(status.error());
+  if (Status status = pages.read(*at, bytes); !status) return fail(status);
   return parse_xml(as_text(bytes));
 }
 
@@ -164,14 +159,14 @@ std::optional<size_t> E57Scan::field(std::string_view wanted) const {
 
 Result<E57Header> parse_e57_header(const E57Pages& pages) {
   const Result<XmlNode> root = read_xml(pages);
-  if (!root) return fail(root.error());
+  if (!root) return fail(root);
   E57Header header;
   if (const XmlNode* metadata = root->child("coordinateMetadata")) header.crs = trimmed(metadata->text);
   if (const XmlNode* images = root->child("images2D")) header.images = images->children.size();
   const XmlNode* scans = root->child("data3D");
   for (size_t i = 0; scans != nullptr && i < scans->children.size(); ++i) {
     Result<E57Scan> scan = parse_scan(scans->children[i]);
-    if (!scan) return fail(std::move(scan.error()));
+    if (!scan) return fail(scan);
     if (scan->count > 0) header.scans.push_back(std::move(*scan));
   }
   return header;

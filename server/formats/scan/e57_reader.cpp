@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "scan/e57_header.h"
 #include "scan/e57_pages.h"
 #include "scan/e57_streams.h"
@@ -155,14 +155,14 @@ class E57Rows : public RowSource {
     const Run& run = runs_[piece];
     PointTable table;
     table.rows = run.count;
-    if (Status status = add_positions(run, table); !status) return fail(status.error());
+    if (Status status = add_positions(run, table); !status) return fail(status);
     for (const char* channel : {"colorRed", "colorGreen", "colorBlue"}) {
       if (Status status = color_bits_ > 0 ? add_color(run, channel, table) : Status(); !status) {
-        return fail(status.error());
+        return fail(status);
       }
     }
     for (const Attribute& attribute : attributes_) {
-      if (Status status = add_attribute(run, attribute, table); !status) return fail(status.error());
+      if (Status status = add_attribute(run, attribute, table); !status) return fail(status);
     }
     return table;
   }
@@ -190,7 +190,7 @@ class E57Rows : public RowSource {
     if (!index) return values;
     const E57Field& field = scans_[run.scan].fields[*index];
     const Result<std::vector<std::byte>> bytes = stream_of(run, *index);
-    if (!bytes) return fail(bytes.error());
+    if (!bytes) return fail(bytes);
     if (field.coding == E57Coding::kFloat || field.coding == E57Coding::kDouble) {
       const bool single = field.coding == E57Coding::kFloat;
       for (size_t i = 0; i < run.count; ++i) {
@@ -211,7 +211,7 @@ class E57Rows : public RowSource {
     Triple triple;
     for (size_t axis = 0; axis < 3; ++axis) {
       Result<std::vector<double>> values = values_of(run, names[axis], kNan);
-      if (!values) return fail(std::move(values.error()));
+      if (!values) return fail(values);
       triple[axis] = std::move(*values);
     }
     return triple;
@@ -220,9 +220,9 @@ class E57Rows : public RowSource {
   /// Replaces the positions that are not valid by those of spherical coordinates, where these are.
   [[nodiscard]] Status use_spherical(const Run& run, const std::vector<double>& state, Triple& xyz) const {
     const Result<Triple> polar = values_of(run, {"sphericalRange", "sphericalAzimuth", "sphericalElevation"});
-    if (!polar) return fail(polar.error());
+    if (!polar) return fail(polar);
     const Result<std::vector<double>> polar_state = values_of(run, "sphericalInvalidState", 0);
-    if (!polar_state) return fail(polar_state.error());
+    if (!polar_state) return fail(polar_state);
     const auto& [range, azimuth, elevation] = *polar;
     for (size_t i = 0; i < run.count; ++i) {
       if (state[i] == 0) continue;
@@ -237,11 +237,11 @@ class E57Rows : public RowSource {
   [[nodiscard]] Status add_positions(const Run& run, PointTable& table) const {
     const E57Scan& scan = scans_[run.scan];
     Result<Triple> xyz = values_of(run, {"cartesianX", "cartesianY", "cartesianZ"});
-    if (!xyz) return fail(std::move(xyz.error()));
+    if (!xyz) return fail(xyz);
     constexpr double kNotValid = 2;  // of both states
     const Result<std::vector<double>> state =
         values_of(run, "cartesianInvalidState", scan.field("cartesianX") ? 0 : kNotValid);
-    if (!state) return fail(state.error());
+    if (!state) return fail(state);
     if (Status status = use_spherical(run, *state, *xyz); !status) return status;
     for (size_t i = 0; scan.pose && i < run.count; ++i) {
       const glm::dvec3 placed = scan.pose->apply({(*xyz)[0][i], (*xyz)[1][i], (*xyz)[2][i]});
@@ -258,7 +258,7 @@ class E57Rows : public RowSource {
     const bool known = has_colors(scans_[run.scan]);
     const double grey = low + (high - low) / 2;
     const Result<std::vector<double>> values = values_of(run, known ? channel : "", grey);
-    if (!values) return fail(values.error());
+    if (!values) return fail(values);
     std::vector<uint16_t> wide(run.count);
     for (size_t i = 0; i < run.count; ++i) {
       const double scaled = ((*values)[i] - low) / (high - low) * top + 0.5;
@@ -280,12 +280,12 @@ class E57Rows : public RowSource {
     const bool whole = index && scans_[run.scan].fields[*index].coding == E57Coding::kInteger;
     if (!whole) {
       const Result<std::vector<double>> values = values_of(run, attribute.field, 0);
-      if (!values) return fail(values.error());
+      if (!values) return fail(values);
       add_as(attribute.type, *values, table);
       return {};
     }
     const Result<std::vector<std::byte>> bytes = stream_of(run, *index);
-    if (!bytes) return fail(bytes.error());
+    if (!bytes) return fail(bytes);
     add_as(attribute.type, integers_of(scans_[run.scan].fields[*index], *bytes, run.first, run.count), table);
     return {};
   }
@@ -314,9 +314,9 @@ class E57Rows : public RowSource {
 
 Result<std::unique_ptr<RowSource>> e57_rows(std::span<const std::byte> bytes) {
   const Result<E57Pages> pages = E57Pages::open(bytes);
-  if (!pages) return fail(pages.error());
+  if (!pages) return fail(pages);
   Result<E57Header> header = parse_e57_header(*pages);
-  if (!header) return fail(std::move(header.error()));
+  if (!header) return fail(header);
   if (header->scans.empty()) return fail(ErrorKind::kInvalidInput, "has no points");
   std::vector<E57Streams> streams;
   for (const E57Scan& scan : header->scans) {
@@ -325,7 +325,7 @@ Result<std::unique_ptr<RowSource>> e57_rows(std::span<const std::byte> bytes) {
       return fail(ErrorKind::kInvalidInput, "the points of an E57 scan are all in one place");
     }
     Result<E57Streams> opened = E57Streams::open(*pages, scan);
-    if (!opened) return fail(std::move(opened.error()));
+    if (!opened) return fail(opened);
     streams.push_back(std::move(*opened));
   }
   return std::make_unique<E57Rows>(*pages, std::move(*header), std::move(streams));

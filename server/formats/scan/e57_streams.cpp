@@ -25,13 +25,13 @@ struct Section {
 
 Result<Section> read_section(const E57Pages& pages, const E57Scan& scan) {
   const Result<uint64_t> at = pages.logical(scan.section);
-  if (!at) return fail(at.error());
+  if (!at) return fail(at);
   std::array<std::byte, kSectionHeaderBytes> header{};
-  if (Status status = pages.read(*at, header); !status) return fail(status.error());
+  if (Status status = pages.read(*at, header); !status) return fail(status);
   if (header[0] != std::byte{1}) return invalid_input("the points of an E57 scan are missing");
   const auto size = load<uint64_t>(&header[8]);
   const Result<uint64_t> first = pages.logical(load<uint64_t>(&header[16]));
-  if (!first) return fail(first.error());
+  if (!first) return fail(first);
   if (size > pages.size() - *at) return invalid_input("truncated: the E57 file ends within its points");
   return Section{*first, *at + size};
 }
@@ -57,16 +57,16 @@ Status E57Streams::add_packet(const E57Pages& pages, uint64_t at, uint64_t size)
 
 Result<E57Streams> E57Streams::open(const E57Pages& pages, const E57Scan& scan) {
   const Result<Section> section = read_section(pages, scan);
-  if (!section) return fail(section.error());
+  if (!section) return fail(section);
   E57Streams streams;
   streams.parts_.resize(scan.fields.size());
   for (uint64_t at = section->first; at + kShortestPacket <= section->end;) {
     std::array<std::byte, kShortestPacket> head{};
-    if (Status status = pages.read(at, head); !status) return fail(status.error());
+    if (Status status = pages.read(at, head); !status) return fail(status);
     const uint64_t size = load<uint16_t>(&head[2]) + uint64_t{1};
     if (size < kShortestPacket) return invalid_input("an E57 packet is too short");
     if (Status status = head[0] == kDataPacket ? streams.add_packet(pages, at, size) : Status(); !status) {
-      return fail(status.error());
+      return fail(status);
     }
     at += size;
   }
@@ -94,7 +94,7 @@ Result<std::vector<std::byte>> E57Streams::read(const E57Pages& pages, size_t fi
     const uint64_t start = part == parts.begin() ? 0 : std::prev(part)->end;
     const uint64_t stop = std::min(end, part->end);
     const auto to = std::span(bytes).subspan(at - begin, stop - at);
-    if (Status status = pages.read(part->place + (at - start), to); !status) return fail(status.error());
+    if (Status status = pages.read(part->place + (at - start), to); !status) return fail(status);
     at = stop;
   }
   return bytes;

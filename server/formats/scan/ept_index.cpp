@@ -194,7 +194,7 @@ Result<EptDescription> parse_ept(std::span<const std::byte> bytes) {
     ept.conforming.max = {(*own)[3], (*own)[4], (*own)[5]};
   }
   ept.span = number_of(json, "span", 0);
-  if (Status status = parse_schema(json, ept); !status) return fail(status.error());
+  if (Status status = parse_schema(json, ept); !status) return fail(status);
   ept.crs = crs_of(member(json, "srs"));
   return ept;
 }
@@ -224,10 +224,10 @@ Result<EptNodes> read_ept_nodes(const EptDescription& ept, const FileFolder& fol
         return invalid_input("a page of the EPT hierarchy is within itself: " + ept_name(key));
       }
       const Result<std::vector<std::byte>> bytes = folder.read(page_name(key), most_bytes);
-      if (!bytes) return fail(bytes.error());
+      if (!bytes) return fail(bytes);
       most_bytes -= bytes->size();
       const Status taken = take_page(ept, *bytes, zone, nodes, pages);
-      if (!taken) return fail(taken.error().kind, page_name(key) + ": " + taken.error().message);
+      if (!taken) return fail_about(page_name(key), taken);
     }
   }
   return nodes;
@@ -236,7 +236,7 @@ Result<EptNodes> read_ept_nodes(const EptDescription& ept, const FileFolder& fol
 Result<EptColumns> ept_columns(const EptDescription& ept, std::span<const std::byte> tile) {
   if (ept.coding != EptCoding::kLaz) return EptColumns{binary_columns(ept), binary_grid(ept)};
   const auto rows = las_rows(tile);
-  if (!rows) return fail(rows.error());
+  if (!rows) return fail(rows);
   return EptColumns{(*rows)->columns(), (*rows)->traits().grid};
 }
 
@@ -244,7 +244,7 @@ Result<PointTable> ept_points(const EptDescription& ept, std::span<const ColumnI
                               std::span<const std::byte> tile, uint64_t count) {
   if (ept.coding == EptCoding::kLaz) {
     const auto rows = las_rows(tile);
-    if (!rows) return fail(rows.error());
+    if (!rows) return fail(rows);
     if (!std::ranges::equal((*rows)->columns(), columns)) {
       return invalid_input("has not the attributes of the other tiles");
     }

@@ -24,7 +24,7 @@ struct EptScan {
 
 Result<PointTable> read_tile(const EptScan& scan, size_t tile) {
   const Result<TileFile> file = TileFile::open(scan.folder, ept_tile_name(scan.ept, scan.keys[tile]));
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   Result<PointTable> table = ept_points(scan.ept, scan.columns, file->bytes(), scan.counts[tile]);
   return table ? std::move(table) : file->error(table.error());
 }
@@ -35,7 +35,7 @@ Status find_columns(EptScan& scan) {
     return ept_columns(scan.ept, {}).map([&](EptColumns found) { scan.columns = std::move(found.columns); });
   }
   const Result<TileFile> file = TileFile::open(scan.folder, ept_tile_name(scan.ept, scan.keys.front()));
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   Result<EptColumns> found = ept_columns(scan.ept, file->bytes());
   if (!found) return file->error(found.error());
   scan.columns = std::move(found->columns);
@@ -47,11 +47,11 @@ Status find_columns(EptScan& scan) {
 Result<std::unique_ptr<RowSource>> ept_rows(const fs::path& path, const DecodingLimit& limit,
                                             const Selection& selection) {
   const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   Result<EptDescription> ept = parse_ept(file->bytes());
-  if (!ept) return fail(std::move(ept.error()));
+  if (!ept) return fail(ept);
   const Result<EptNodes> nodes = read_ept_nodes(*ept, DiskFolder(path.parent_path()), selection.zone);
-  if (!nodes) return fail(nodes.error());
+  if (!nodes) return fail(nodes);
   const auto scan = std::make_shared<EptScan>();
   scan->folder = path.parent_path();
   scan->ept = std::move(*ept);
@@ -60,7 +60,7 @@ Result<std::unique_ptr<RowSource>> ept_rows(const fs::path& path, const Decoding
     scan->keys.push_back(key);
     scan->counts.push_back(count);
   }
-  if (Status status = find_columns(*scan); !status) return fail(status.error());
+  if (Status status = find_columns(*scan); !status) return fail(status);
   TileSet tiles;
   tiles.traits.crs = scan->ept.crs;
   tiles.columns = scan->columns;

@@ -62,7 +62,7 @@ Result<ExpeHeader> parse_header(std::string_view text) {
       header.data_offset = at;
       return header;
     }
-    if (Status status = parse_line(words, header); !status) return fail(status.error());
+    if (Status status = parse_line(words, header); !status) return fail(status);
   }
   return invalid_input("the Expe header does not end");
 }
@@ -88,7 +88,7 @@ Result<std::unique_ptr<RowSource>> expe_rows(std::span<const std::byte> bytes) {
     return fail(ErrorKind::kUnsupported, "Expe point sets as text are not supported");
   }
   const Result<ExpeHeader> header = parse_header(text);
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   const uint64_t stride = header->record_bytes();
   if (stride == 0 || stride > kMaxRecordBytes) return invalid_input("the Expe header states no usable record");
   if (header->points > (bytes.size() - header->data_offset) / stride) {

@@ -164,7 +164,7 @@ bool is_gltf_text(std::string_view text) {
 Result<GltfParts> split_gltf(Bytes file) {
   if (!as_text(file).starts_with("glTF")) {
     Result<Json> json = parse_json(file);
-    if (!json) return fail(std::move(json.error()));
+    if (!json) return fail(json);
     return GltfParts{std::move(*json), {}};
   }
   if (file.size() < kHeader + kChunkHeader) return invalid_input("truncated: GLB header");
@@ -172,11 +172,11 @@ Result<GltfParts> split_gltf(Bytes file) {
     return fail(ErrorKind::kUnsupported, "GLB of version " + std::to_string(word_at(file, 4)) + " is not supported");
   }
   const Result<Bytes> text = find_chunk(file, kJsonChunk);
-  if (!text) return fail(text.error());
+  if (!text) return fail(text);
   const Result<Bytes> binary = find_chunk(file, kBinaryChunk);
-  if (!binary) return fail(binary.error());
+  if (!binary) return fail(binary);
   Result<Json> json = parse_json(*text);
-  if (!json) return fail(std::move(json.error()));
+  if (!json) return fail(json);
   return GltfParts{std::move(*json), *binary};
 }
 
@@ -204,7 +204,7 @@ Result<GltfBuffers> GltfBuffers::open(const std::filesystem::path& file, const G
   GltfBuffers buffers(limit);
   for (const Json& buffer : member(parts.json, "buffers")) {
     const Result<Bytes> bytes = buffers.open_buffer(file, buffer, parts.binary, buffers.buffers_.empty());
-    if (!bytes) return fail(bytes.error());
+    if (!bytes) return fail(bytes);
     buffers.buffers_.push_back(*bytes);
     buffers.bytes_ += bytes->size();
   }
@@ -222,7 +222,7 @@ Result<Bytes> GltfBuffers::open_buffer(const std::filesystem::path& file, const 
   const std::string uri = text_of(buffer, "uri");
   if (uri.empty()) return first ? binary : Bytes();
   if (std::optional<std::vector<std::byte>> decoded = decode_data_uri(uri)) {
-    if (Status status = set_aside(decoded->size()); !status) return fail(std::move(status.error()));
+    if (Status status = set_aside(decoded->size()); !status) return fail(status);
     const auto kept = std::make_shared<const std::vector<std::byte>>(std::move(*decoded));
     contents_.push_back(kept);
     return Bytes(*kept);
@@ -261,9 +261,9 @@ Result<Bytes> GltfBuffers::decompress(const Json& packed, uint64_t index) {
   const std::string filter = text_of(packed, "filter");
   const MeshoptView stated = meshopt_view(packed, mode, filter);
   if (!meshopt_claim_is_plausible(*bytes, stated)) return invalid_input("damaged or truncated meshopt data");
-  if (Status status = set_aside(stated.count * stated.stride); !status) return fail(std::move(status.error()));
+  if (Status status = set_aside(stated.count * stated.stride); !status) return fail(status);
   Result<std::vector<std::byte>> made = decode_meshopt(*bytes, stated);
-  if (!made) return fail(std::move(made.error()));
+  if (!made) return fail(made);
   const auto kept = std::make_shared<const std::vector<std::byte>>(std::move(*made));
   contents_.push_back(kept);
   return decompressed_[index] = Bytes(*kept);
@@ -280,7 +280,7 @@ Status GltfBuffers::read_dense(const Json& json, const Json& accessor, AccessorV
   const std::optional<uint64_t> number = integer_of(accessor, "bufferView");
   if (!number) return {};  // zeros
   const Result<Bytes> bytes = view(json, *number);
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   const uint64_t offset = integer_of(accessor, "byteOffset").value_or(0);
   if (offset > bytes->size()) return invalid_input("glTF accessor beyond the end of its buffer view");
   const uint64_t stated = integer_of(element(member(json, "bufferViews"), *number), "byteStride").value_or(0);
@@ -303,17 +303,17 @@ Status GltfBuffers::read_sparse(const Json& json, const Json& accessor, Accessor
   const uint64_t index_type = integer_of(indices, "componentType").value_or(0);
   const auto run_of = [&](const Json& part, uint64_t item) -> Result<ItemRun> {
     const Result<Bytes> bytes = view(json, integer_of(part, "bufferView").value_or(UINT64_MAX));
-    if (!bytes) return fail(bytes.error());
+    if (!bytes) return fail(bytes);
     const uint64_t offset = integer_of(part, "byteOffset").value_or(0);
     if (offset > bytes->size()) return invalid_input("glTF accessor beyond the end of its buffer view");
     ItemRun run{bytes->subspan(static_cast<size_t>(offset)), count, item, item};
-    if (Status status = check_run(run); !status) return fail(status.error());
+    if (Status status = check_run(run); !status) return fail(status);
     return run;
   };
   const Result<ItemRun> where = run_of(indices, component_size(index_type));
-  if (!where) return fail(where.error());
+  if (!where) return fail(where);
   const Result<ItemRun> what = run_of(values, type.item());
-  if (!what) return fail(what.error());
+  if (!what) return fail(what);
   if (where->item == 0) return invalid_input("glTF accessor of an unknown type");
   for (size_t i = 0; i < count; ++i) {
     const double index = component_at(where->bytes.data() + i * where->stride, index_type, false);
@@ -332,10 +332,10 @@ Result<AccessorValues> GltfBuffers::values(const Json& json, uint64_t accessor) 
   if (!count || type.item() == 0) return invalid_input("glTF accessor of an unknown type, or that is not there");
   // Even the zeros of an accessor without a view stand for as many values as the buffers could hold.
   if (*count > bytes_) return invalid_input("glTF accessor of more values than its buffers can hold");
-  if (Status status = set_aside(*count * type.components * sizeof(double)); !status) return fail(status.error());
+  if (Status status = set_aside(*count * type.components * sizeof(double)); !status) return fail(status);
   AccessorValues values{type.components, std::vector<double>(static_cast<size_t>(*count) * type.components)};
-  if (Status status = read_dense(json, stated, values); !status) return fail(std::move(status.error()));
-  if (Status status = read_sparse(json, stated, values); !status) return fail(std::move(status.error()));
+  if (Status status = read_dense(json, stated, values); !status) return fail(status);
+  if (Status status = read_sparse(json, stated, values); !status) return fail(status);
   return values;
 }
 

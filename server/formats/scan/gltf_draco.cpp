@@ -50,7 +50,7 @@ Result<PrimitiveValues> attributes_of(const draco::PointCloud& points, const std
     const draco::PointAttribute* attribute = points.GetAttributeByUniqueId(id);
     if (attribute == nullptr) return fail(ErrorKind::kInvalidInput, "Draco data without the attribute " + name);
     Result<AccessorValues> values = values_of(points, *attribute);
-    if (!values) return fail(std::move(values.error()));
+    if (!values) return fail(values);
     made.attributes.emplace(name, std::move(*values));
   }
   return made;

@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/ascii_text.h"
 #include "base/invalid_input.h"
-#include "base/letter_case.h"
 #include "scan/gltf_primitive.h"
 #include "scan/gltf_scene.h"
 #include "scan/move_points.h"
@@ -162,13 +162,13 @@ GltfPoints::GltfPoints(GltfParts parts, GltfBuffers buffers)
 Result<GltfPoints> GltfPoints::open(std::span<const std::byte> bytes, const std::filesystem::path& path,
                                     const DecodingLimit& limit) {
   Result<GltfParts> parts = split_gltf(bytes);
-  if (!parts) return fail(std::move(parts.error()));
-  if (Status status = check_gltf_extensions(parts->json, kHarmless); !status) return fail(std::move(status.error()));
+  if (!parts) return fail(parts);
+  if (Status status = check_gltf_extensions(parts->json, kHarmless); !status) return fail(status);
   Result<GltfBuffers> buffers = GltfBuffers::open(path, *parts, limit);
-  if (!buffers) return fail(std::move(buffers.error()));
+  if (!buffers) return fail(buffers);
   GltfPoints points(std::move(*parts), std::move(*buffers));
   const auto add = [&points](const Json& node, const glm::dmat4& to_world) { return points.add_node(node, to_world); };
-  if (Status status = visit_gltf_nodes(points.parts_->json, add); !status) return fail(std::move(status.error()));
+  if (Status status = visit_gltf_nodes(points.parts_->json, add); !status) return fail(status);
   points.find_columns();
   return points;
 }
@@ -240,7 +240,7 @@ Result<PointTable> GltfPoints::table(const glm::dmat4& transform) const {
   Rows rows(columns_);
   for (const Part& part : scene_) {
     const Result<PrimitiveValues> values = read_gltf_primitive(parts_->json, *part.stated, wanted, buffers);
-    if (!values) return fail(values.error());
+    if (!values) return fail(values);
     if (values->indices.size() != part.points) return invalid_input("has not the points that its accessors state");
     const glm::dmat4 to_world = transform * part.to_world;
     Triples positions = RowValues(*values, "POSITION").triples();
@@ -285,7 +285,7 @@ bool is_gltf_of_points(std::span<const std::byte> bytes) {
 Result<std::unique_ptr<RowSource>> gltf_rows(std::span<const std::byte> bytes, const std::filesystem::path& path,
                                              const DecodingLimit& limit) {
   const Result<GltfPoints> points = GltfPoints::open(bytes, path, limit);
-  if (!points) return fail(points.error());
+  if (!points) return fail(points);
   if (points->points() == 0) return fail(ErrorKind::kUnsupported, "is a glTF file without points");
   RowTraits traits;
   traits.z_up = points->centre().has_value();
@@ -295,7 +295,7 @@ Result<std::unique_ptr<RowSource>> gltf_rows(std::span<const std::byte> bytes, c
     transform[3] = glm::dvec4(*points->centre(), 1);
   }
   Result<PointTable> table = points->table(transform);
-  if (!table) return fail(std::move(table.error()));
+  if (!table) return fail(table);
   if (points->others()) traits.notes.emplace_back("triangles and lines beside its points are left out");
   return std::make_unique<SlicedRows>(traits, points->columns(), std::move(*table));
 }

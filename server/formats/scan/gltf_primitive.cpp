@@ -30,7 +30,7 @@ Status ValueReader::add_compressed(const Json& compressed, const Json& stated, c
                                    PrimitiveValues& made) {
   const Result<std::span<const std::byte>> bytes =
       buffers_.view(json_, integer_of(compressed, "bufferView").value_or(UINT64_MAX));
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   if (Status status = buffers_.set_aside(draco_decoded_bytes(*bytes)); !status) return status;
   std::map<std::string, uint32_t> ids;
   for (const std::string& name : wanted) {
@@ -39,7 +39,7 @@ Status ValueReader::add_compressed(const Json& compressed, const Json& stated, c
   }
   const DracoGeometry geometry = gltf_mode(stated) == kGltfPoints ? DracoGeometry::kPoints : DracoGeometry::kFaces;
   Result<PrimitiveValues> decoded = decode_draco(*bytes, ids, geometry);
-  if (!decoded) return fail(std::move(decoded.error()));
+  if (!decoded) return fail(decoded);
   for (auto& [name, values] : decoded->attributes) {
     if (Status status = buffers_.set_aside(values.values.size() * sizeof(double)); !status) return status;
     const uint64_t number = integer_of(member(stated, "attributes"), name.c_str()).value_or(UINT64_MAX);
@@ -59,7 +59,7 @@ Status ValueReader::add_plain(const Json& attributes, const std::vector<std::str
     const std::optional<uint64_t> accessor = integer_of(attributes, name.c_str());
     if (!accessor || made.attributes.contains(name)) continue;
     Result<AccessorValues> values = buffers_.values(json_, *accessor);
-    if (!values) return fail(std::move(values.error()));
+    if (!values) return fail(values);
     made.attributes.emplace(name, std::move(*values));
   }
   return {};
@@ -74,7 +74,7 @@ Status ValueReader::add_indices(const Json& stated, PrimitiveValues& made) {
     return {};
   }
   const Result<AccessorValues> values = buffers_.values(json_, *accessor);
-  if (!values) return fail(values.error());
+  if (!values) return fail(values);
   for (const double value : values->values) {
     if (!(value >= 0 && value < static_cast<double>(count))) {
       return invalid_input("glTF primitive with an index beyond its vertices");
@@ -92,7 +92,7 @@ Result<PrimitiveValues> ValueReader::read(const Json& stated, const std::vector<
   if (status) status = add_plain(attributes, wanted, made);
   if (status && made.attributes["POSITION"].components != 3) status = invalid_input("glTF primitive without positions");
   if (status && !compressed.is_object()) status = add_indices(stated, made);
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   return made;
 }
 

@@ -73,7 +73,7 @@ Result<SubtreeParts> split_subtree(Bytes bytes) {
     binary = rest.subspan(json_bytes, binary_bytes);
   }
   Result<Json> json = parse_object(text);
-  if (!json) return fail(std::move(json.error()));
+  if (!json) return fail(json);
   return SubtreeParts{std::move(*json), binary};
 }
 
@@ -142,7 +142,7 @@ bool Subtree::Availability::at(uint64_t index) const {
 Result<Subtree> Subtree::open(const std::filesystem::path& folder, const std::string& name,
                               const ImplicitTiling& tiling) {
   Result<TileFile> file = TileFile::open(folder, name);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   Subtree subtree(std::move(*file));
   if (Status status = subtree.read(folder, name, tiling); !status) return subtree.file_.error(status.error());
   return subtree;
@@ -150,12 +150,12 @@ Result<Subtree> Subtree::open(const std::filesystem::path& folder, const std::st
 
 Status Subtree::read(const std::filesystem::path& folder, const std::string& name, const ImplicitTiling& tiling) {
   const Result<SubtreeParts> parts = split_subtree(file_.bytes());
-  if (!parts) return fail(parts.error());
+  if (!parts) return fail(parts);
   axes_ = tiling.axes;
   if (Status status = open_buffers(parts->json, folder, name, parts->binary); !status) return status;
   const auto take = [&](const Json& stated, uint64_t count, Availability& to) -> Status {
     Result<Availability> made = availability(parts->json, stated, count);
-    if (!made) return fail(std::move(made.error()));
+    if (!made) return fail(made);
     to = *made;
     return {};
   };
@@ -183,7 +183,7 @@ Status Subtree::open_buffers(const Json& json, const std::filesystem::path& fold
       continue;
     }
     Result<TileFile> file = TileFile::open(folder, (std::filesystem::path(name).parent_path() / uri).string());
-    if (!file) return fail(std::move(file.error()));
+    if (!file) return fail(file);
     buffer_files_.push_back(std::move(*file));
     buffers_.push_back(buffer_files_.back().bytes());
   }

@@ -240,13 +240,13 @@ std::vector<LasVariableRecord> las_extended_records(Bytes bytes, const LasHeader
 
 Result<LasHeader> parse_las_header(Bytes bytes) {
   if (bytes.size() < kHeaderSize) return invalid_input("truncated: the file ends within its LAS header");
-  if (Status status = check_version(bytes); !status) return fail(status.error());
+  if (Status status = check_version(bytes); !status) return fail(status);
   const auto stated_format = load<uint8_t>(&bytes[104]);
   LasHeader header;
   header.minor_version = load<uint8_t>(&bytes[25]);
   header.compressed = (stated_format & kCompressedBits) != 0;
   header.point_format = stated_format & ~kCompressedBits;
-  if (Status status = check_point_format(header.point_format); !status) return fail(status.error());
+  if (Status status = check_point_format(header.point_format); !status) return fail(status);
   header.record_length = load<uint16_t>(&bytes[105]);
   header.data_offset = load<uint32_t>(&bytes[96]);
   header.count = point_count(bytes, header.minor_version);
@@ -255,7 +255,7 @@ Result<LasHeader> parse_las_header(Bytes bytes) {
     header.grid.offset[axis] = load<double>(&bytes[155 + 8 * static_cast<size_t>(axis)]);
   }
   if (!usable_grid(header.grid)) return invalid_input("LAS scale or offset is not usable");
-  if (Status status = check_sizes(bytes, header); !status) return fail(status.error());
+  if (Status status = check_sizes(bytes, header); !status) return fail(status);
   if (header.count == 0) return invalid_input("has no points");
   parse_variable_records(bytes, header);
   for (const LasVariableRecord& record : las_extended_records(bytes, header)) {

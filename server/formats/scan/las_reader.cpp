@@ -177,7 +177,7 @@ PointTable las_table(const std::byte* records, size_t count, const LasHeader& he
 
 Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes, const Selection& selection) {
   Result<LasHeader> header = parse_las_header(bytes);
-  if (!header) return fail(std::move(header.error()));
+  if (!header) return fail(header);
   if (header->compressed) return laz_rows(bytes, std::move(*header), selection);
   return std::make_unique<LasRows>(bytes, std::move(*header));
 }

@@ -18,7 +18,7 @@ LasRecords::LasRecords(const std::filesystem::path& path, MappedFile file, LasHe
 Result<LasRecords> LasRecords::open(const std::filesystem::path& path, const Selection& selection) {
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   Result<LasHeader> header = parse_las_header(file->bytes());
   if (!header) return named(header.error());
   Result<std::unique_ptr<RowSource>> rows = las_rows(file->bytes(), selection);
@@ -30,7 +30,7 @@ Result<LasRecords> LasRecords::open(const std::filesystem::path& path, const Sel
 
 Result<std::vector<std::byte>> LasRecords::read(size_t piece) const {
   const Result<PointTable> table = rows_->read(piece);
-  if (!table) return fail(table.error().kind, path_.string() + ": " + table.error().message);
+  if (!table) return fail_about(path_.string(), table);
   const std::vector<uint32_t> chosen = filter_.chosen(*table);
   const size_t length = header_.record_length;
   std::vector<std::byte> records(chosen.size() * length);

@@ -48,10 +48,10 @@ class SliceReader {
 
   Result<std::vector<std::byte>> read(const Slice& slice) {
     Result<Stopped> stopped = reader_before(slice);
-    if (!stopped) return fail(std::move(stopped.error()));
-    if (Status status = skip(*stopped, slice.first); !status) return fail(status.error());
+    if (!stopped) return fail(stopped);
+    if (Status status = skip(*stopped, slice.first); !status) return fail(status);
     std::vector<std::byte> records(slice.count * file_.record_length());
-    if (Status status = stopped->reader.read(records); !status) return fail(status.error());
+    if (Status status = stopped->reader.read(records); !status) return fail(status);
     stopped->next = slice.first + slice.count;
     if (stopped->next < file_.chunks()[slice.chunk].count) keep(std::move(*stopped));
     return records;
@@ -123,7 +123,7 @@ class LazRows : public RowSource {
   [[nodiscard]] Result<PointTable> read(size_t piece) const override {
     const Slice& slice = slices_[piece];
     Result<std::vector<std::byte>> records = reader_.read(slice);
-    if (!records) return fail(std::move(records.error()));
+    if (!records) return fail(records);
     PointTable table = las_table(records->data(), slice.count, header_);
     table.records = std::move(*records);
     return table;
@@ -155,7 +155,7 @@ Result<laz::LazFile> open_file(std::span<const std::byte> bytes, const laz::LazP
     return laz::LazFile::open(bytes, points, header.laszip_record);
   }
   const Result<CopcInfo> info = read_copc_info(header.copc_record);
-  if (!info) return fail(info.error());
+  if (!info) return fail(info);
   return read_copc_nodes(MemorySource(bytes), *info, selection.zone).and_then([&](const CopcNodes& nodes) {
     return laz::LazFile::open_chunks(bytes, points, header.laszip_record, chunks_of(nodes));
   });
@@ -170,7 +170,7 @@ Result<std::unique_ptr<RowSource>> laz_rows(std::span<const std::byte> bytes, La
   }
   const laz::LazPoints points = {header.point_format, header.record_length, header.count, header.data_offset};
   Result<laz::LazFile> file = open_file(bytes, points, header, selection);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return std::make_unique<LazRows>(std::move(*file), std::move(header));
 }
 

@@ -210,7 +210,7 @@ Result<std::vector<std::byte>> decode_meshopt(Bytes packed, const MeshoptView& v
   if (view.stride % 4 != 0 || view.stride > kMaxStride) return damaged();
   Result<std::vector<std::byte>> made = decode_attributes(packed, view.count, view.stride);
   if (!made) return made;
-  if (Status status = undo_filter(view, *made); !status) return fail(std::move(status.error()));
+  if (Status status = undo_filter(view, *made); !status) return fail(status);
   return made;
 }
 

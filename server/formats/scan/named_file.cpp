@@ -5,18 +5,13 @@
 #include <string>
 #include <system_error>
 
+#include "base/ascii_text.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// True if the file is in the folder or below once links are followed. A file that is not there is in its folder.
 bool stays_inside(const fs::path& folder, const fs::path& file) {

@@ -144,9 +144,9 @@ size_t PcdHeader::record_length() const {
 Result<PcdHeader> parse_pcd_header(std::span<const std::byte> bytes) {
   PcdHeader header;
   const Result<RawHeader> raw = split_header(as_text(bytes), header.data_offset);
-  if (!raw) return fail(raw.error());
-  if (Status status = parse_fields(*raw, header); !status) return fail(status.error());
-  if (Status status = parse_size(*raw, header); !status) return fail(status.error());
+  if (!raw) return fail(raw);
+  if (Status status = parse_fields(*raw, header); !status) return fail(status);
+  if (Status status = parse_size(*raw, header); !status) return fail(status);
   header.sensor = parse_sensor(raw->viewpoint, header.organised);
   const std::optional<PcdEncoding> encoding = parse_encoding(raw->data);
   if (!encoding) return invalid_input("PCD data is neither ascii, binary nor binary_compressed");

@@ -76,7 +76,7 @@ Result<PointTable> read_compressed(const PcdHeader& header, Bytes data, const De
   if (expanded % length != 0 || expanded / length != header.points) {
     return fail(ErrorKind::kInvalidInput, "PCD compressed data is not of the size that the header states");
   }
-  if (Status status = limit.check(expanded); !status) return fail(std::move(status.error()));
+  if (Status status = limit.check(expanded); !status) return fail(status);
   std::optional<std::vector<uint8_t>> values = decompress_lzf(data.first(compressed), expanded);
   if (!values) return fail(ErrorKind::kInvalidInput, "PCD compressed data is damaged");
   PointTable table;
@@ -106,7 +106,7 @@ class AsciiRows : public RowSource {
     table.rows = std::min(kPieceRows, header_.points - piece * kPieceRows);
     Tokens tokens = starts_[piece];
     for (size_t row = 0; row < table.rows; ++row) {
-      if (Status status = read_row(tokens, values); !status) return fail(std::move(status.error()));
+      if (Status status = read_row(tokens, values); !status) return fail(status);
     }
     for (surfel::ScalarValues& column : values) add_column(table, std::move(column));
     return table;
@@ -149,12 +149,12 @@ Result<std::unique_ptr<RowSource>> ascii_rows(const PcdHeader& header, Bytes dat
 
 Result<std::unique_ptr<RowSource>> pcd_rows(Bytes bytes, const DecodingLimit& limit) {
   const Result<PcdHeader> header = parse_pcd_header(bytes);
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   const Bytes data = bytes.subspan(header->data_offset);
   if (header->encoding == PcdEncoding::kAscii) return ascii_rows(*header, data);
   Result<PointTable> table =
       header->encoding == PcdEncoding::kBinary ? read_binary(*header, data) : read_compressed(*header, data, limit);
-  if (!table) return fail(std::move(table.error()));
+  if (!table) return fail(table);
   return std::make_unique<SlicedRows>(traits_of(*header), columns_of(*header), std::move(*table));
 }
 

@@ -119,7 +119,7 @@ Result<PlyHeader> parse_ply_header(std::span<const std::byte> bytes) {
       header.data_offset = lines.offset();
       return header;
     }
-    if (Status status = parse_line(*line, header, has_format); !status) return fail(status.error());
+    if (Status status = parse_line(*line, header, has_format); !status) return fail(status);
   }
   return fail(ErrorKind::kInvalidInput, "PLY header has no end_header line");
 }

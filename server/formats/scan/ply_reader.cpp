@@ -167,7 +167,7 @@ class WalkedRows : public RowSource {
     for (const ColumnInfo& column : columns_) values.push_back(empty_values(column.type));
     PointTable table;
     table.rows = std::min(kPieceRows, element_.count - piece * kPieceRows);
-    if (Status status = walk.walk_rows(element_, table.rows, &values); !status) return fail(std::move(status.error()));
+    if (Status status = walk.walk_rows(element_, table.rows, &values); !status) return fail(status);
     for (surfel::ScalarValues& column : values) add_column(table, std::move(column));
     return table;
   }
@@ -194,7 +194,7 @@ Result<std::vector<Walk>> find_starts(const PlyElement& element, Walk& walk) {
   for (uint64_t first = 0; first < element.count; first += kPieceRows) {
     starts.push_back(walk);
     Status status = walk.walk_rows(element, std::min(kPieceRows, element.count - first), nullptr);
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
   }
   return starts;
 }
@@ -215,7 +215,7 @@ using Rows = std::unique_ptr<RowSource>;
 template <typename Walk>
 Result<Rows> walked_rows(const PlyElement& element, const RowTraits& traits, Walk& walk) {
   Result<std::vector<Walk>> starts = find_starts(element, walk);
-  if (!starts) return fail(std::move(starts.error()));
+  if (!starts) return fail(starts);
   return std::make_unique<WalkedRows<Walk>>(traits, element, std::move(*starts));
 }
 
@@ -226,17 +226,17 @@ Result<Rows> element_rows(const PlyElement& element, const RowTraits& traits, As
 Result<Rows> element_rows(const PlyElement& element, const RowTraits& traits, BinaryWalk& walk, bool swapped) {
   if (has_lists(element)) return walked_rows(element, traits, walk);
   const Result<const std::byte*> records = walk.take_records(element);
-  if (!records) return fail(records.error());
+  if (!records) return fail(records);
   return std::make_unique<SlicedRows>(traits, columns_of(element), table_in_place(element, *records, swapped));
 }
 
 template <typename Walk>
 Result<Rows> rows_of(const PlyHeader& header, size_t wanted, const RowTraits& traits, Walk walk, bool swapped) {
   const std::span elements(header.elements);
-  if (Status status = skip_all(elements.first(wanted), walk); !status) return fail(std::move(status.error()));
+  if (Status status = skip_all(elements.first(wanted), walk); !status) return fail(status);
   Result<Rows> rows = element_rows(elements[wanted], traits, walk, swapped);
   if (!rows) return rows;
-  if (Status status = skip_all(elements.subspan(wanted + 1), walk); !status) return fail(std::move(status.error()));
+  if (Status status = skip_all(elements.subspan(wanted + 1), walk); !status) return fail(status);
   return rows;
 }
 
@@ -280,10 +280,10 @@ bool has_faces(const PlyHeader& header) {
 
 Result<std::unique_ptr<RowSource>> ply_rows(std::span<const std::byte> bytes) {
   const Result<PlyHeader> header = parse_ply_header(bytes);
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   const std::optional<size_t> vertex = find_element(*header, "vertex");
   if (!vertex) return without("vertex");
-  if (Status status = check_vertices(header->elements[*vertex]); !status) return fail(status.error());
+  if (Status status = check_vertices(header->elements[*vertex]); !status) return fail(status);
   RowTraits traits;
   traits.may_be_graphics = has_faces(*header);  // meshes come from graphics, y-up; points come from scanners, z-up
   return rows_of(bytes, *header, *vertex, traits);
@@ -291,7 +291,7 @@ Result<std::unique_ptr<RowSource>> ply_rows(std::span<const std::byte> bytes) {
 
 Result<std::unique_ptr<RowSource>> ply_element_rows(std::span<const std::byte> bytes, std::string_view element) {
   const Result<PlyHeader> header = parse_ply_header(bytes);
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   const std::optional<size_t> wanted = find_element(*header, element);
   if (!wanted) return without(element);
   return rows_of(bytes, *header, *wanted, {});

@@ -91,7 +91,7 @@ Result<std::optional<Column>> batch_id_column(const PntsTile& tile) {
   const auto type = component_type(stated.empty() ? "UNSIGNED_SHORT" : stated);
   if (!type || is_floating(*type)) return invalid_input("the type of BATCH_ID is not supported");
   const auto bytes = values_of(property, tile.feature_bytes, tile.points, size_of(*type));
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   return Column{*type, bytes->data(), size_of(*type), false};
 }
 
@@ -114,7 +114,7 @@ Status add_batch_property(const PntsTile& tile, const BatchProperty& property, c
   const uint64_t rows = ids.empty() ? tile.points : integer_of(tile.features, "BATCH_LENGTH").value_or(0);
   const Json& json = member(tile.batches, property.name.c_str());
   const auto bytes = values_of(json, tile.batch_bytes, rows, size_of(property.type));
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   with_type(property.type, [&](auto zero) {
     using T = decltype(zero);
     std::vector<T> values(tile.points);
@@ -142,7 +142,7 @@ Result<Triples> positions_of(const PntsTile& tile) {
   if (!property.is_object()) return invalid_input("the pnts tile has no positions");
   const size_t width = quantised ? sizeof(uint16_t) : sizeof(float);
   const auto bytes = values_of(property, tile.feature_bytes, tile.points, 3 * width);
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   const glm::dvec3 scale = vector_of(tile.features, "QUANTIZED_VOLUME_SCALE", glm::dvec3(1));
   const glm::dvec3 offset = vector_of(tile.features, "QUANTIZED_VOLUME_OFFSET", glm::dvec3(0));
   Triples positions(tile.points);
@@ -181,7 +181,7 @@ Result<std::vector<Color>> colors_of(const PntsTile& tile) {
     const Json& property = member(tile.features, name);
     if (!property.is_object()) continue;
     const auto bytes = values_of(property, tile.feature_bytes, tile.points, width);
-    if (!bytes) return fail(bytes.error());
+    if (!bytes) return fail(bytes);
     const std::byte* at = bytes->data();
     for (Color& color : colors) {
       color = width == 2 ? unpack565(load<uint16_t>(at))
@@ -208,7 +208,7 @@ Result<Triples> normals_of(const PntsTile& tile) {
   const bool packed = !member(tile.features, "NORMAL").is_object();
   const auto bytes = values_of(member(tile.features, packed ? "NORMAL_OCT16P" : "NORMAL"), tile.feature_bytes,
                                tile.points, packed ? 2 : 12);
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   Triples normals(tile.points);
   const std::byte* at = bytes->data();
   for (glm::dvec3& normal : normals) {
@@ -254,7 +254,7 @@ std::vector<ColumnInfo> columns_of_tables(const PntsTile& tile) {
 
 Status add_colors(const PntsTile& tile, PointTable& table) {
   const Result<std::vector<Color>> colors = colors_of(tile);
-  if (!colors) return fail(colors.error());
+  if (!colors) return fail(colors);
   for (size_t channel = 0; channel < 3; ++channel) {
     std::vector<uint8_t> values(colors->size());
     for (size_t i = 0; i < values.size(); ++i) values[i] = (*colors)[i][channel];
@@ -265,7 +265,7 @@ Status add_colors(const PntsTile& tile, PointTable& table) {
 
 Status add_normals(const PntsTile& tile, const glm::dmat4& transform, PointTable& table) {
   Result<Triples> normals = normals_of(tile);
-  if (!normals) return fail(std::move(normals.error()));
+  if (!normals) return fail(normals);
   turn_normals(transform, *normals);
   add_triples<float>(*normals, table);
   return {};
@@ -276,7 +276,7 @@ Status add_batch_properties(const PntsTile& tile, const std::optional<Column>& b
   std::vector<uint32_t> ids;
   if (batch) {
     Result<std::vector<uint32_t>> read = batch_ids(tile, *batch);
-    if (!read) return fail(std::move(read.error()));
+    if (!read) return fail(read);
     ids = std::move(*read);
   }
   for (const BatchProperty& property : batch_properties(tile)) {
@@ -308,12 +308,12 @@ Result<PointTable> own_table(const PntsTile& tile, const glm::dmat4& transform) 
   PointTable table;
   table.rows = tile.points;
   Result<Triples> positions = positions_of(tile);
-  if (!positions) return fail(std::move(positions.error()));
+  if (!positions) return fail(positions);
   place(tile, transform, *positions);
   add_triples<double>(*positions, table);
   const Result<std::optional<Column>> batch = batch_id_column(tile);
-  if (!batch) return fail(batch.error());
-  if (Status status = add_tables(tile, transform, *batch, table); !status) return fail(std::move(status.error()));
+  if (!batch) return fail(batch);
+  if (Status status = add_tables(tile, transform, *batch, table); !status) return fail(status);
   return table;
 }
 
@@ -338,7 +338,7 @@ Result<std::unique_ptr<RowSource>> draco_of(const PntsTile& tile, const Decoding
   const Json& extension = draco_extension(tile.features);
   const uint64_t length = integer_of(extension, "byteLength").value_or(0);
   const auto bytes = values_of(extension, tile.feature_bytes, length, 1);
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   return draco_rows(*bytes, limit);
 }
 
@@ -401,7 +401,7 @@ Result<PointTable> draco_table(const PntsTile& tile, const glm::dmat4& transform
   constexpr std::array<const char*, 3> kPosition{"x", "y", "z"};
   constexpr std::array<const char*, 3> kNormal{"nx", "ny", "nz"};
   const auto rows = draco_of(tile, limit);
-  if (!rows) return fail(rows.error());
+  if (!rows) return fail(rows);
   Result<PointTable> table = all_rows(**rows);
   if (!table) return table;
   if (table->rows != tile.points) return invalid_input("the Draco data have not the points that the pnts tile states");
@@ -415,8 +415,8 @@ Result<PointTable> draco_table(const PntsTile& tile, const glm::dmat4& transform
     replace<float>(columns, kNormal, normals, *table);
   }
   const Result<std::optional<Column>> batch = draco_batch_column(tile, columns, *table);
-  if (!batch) return fail(batch.error());
-  if (Status status = add_tables(tile, transform, *batch, *table); !status) return fail(std::move(status.error()));
+  if (!batch) return fail(batch);
+  if (Status status = add_tables(tile, transform, *batch, *table); !status) return fail(status);
   return table;
 }
 
@@ -439,8 +439,8 @@ Result<TileTables> split_tile(Bytes bytes) {
   }
   Result<Json> features = parse_table(parts[0]);
   Result<Json> batches = parse_table(parts[2]);
-  if (!features) return fail(features.error());
-  if (!batches) return fail(batches.error());
+  if (!features) return fail(features);
+  if (!batches) return fail(batches);
   return TileTables{std::move(*features), parts[1], std::move(*batches), parts[3], bytes.subspan(at)};
 }
 
@@ -450,7 +450,7 @@ glm::dvec3 centre_of(const TileTables& tables) {
 
 Result<PntsTile> parse_pnts(Bytes bytes) {
   Result<TileTables> tables = split_tile(bytes);
-  if (!tables) return fail(std::move(tables.error()));
+  if (!tables) return fail(tables);
   PntsTile tile{std::move(*tables), 0};
   tile.points = integer_of(tile.features, "POINTS_LENGTH").value_or(0);
   if (tile.points > tile.feature_bytes.size() * uint64_t{1024})
@@ -461,7 +461,7 @@ Result<PntsTile> parse_pnts(Bytes bytes) {
 Result<std::vector<ColumnInfo>> pnts_columns(const PntsTile& tile, const DecodingLimit& limit) {
   if (!is_draco(tile)) return own_columns(tile);
   const auto rows = draco_of(tile, limit);
-  if (!rows) return fail(rows.error());
+  if (!rows) return fail(rows);
   return draco_columns(tile, **rows);
 }
 
@@ -471,11 +471,11 @@ Result<PointTable> pnts_table(const PntsTile& tile, const glm::dmat4& transform,
 
 Result<std::unique_ptr<RowSource>> pnts_rows(Bytes bytes, const DecodingLimit& limit) {
   const Result<PntsTile> tile = parse_pnts(bytes);
-  if (!tile) return fail(tile.error());
+  if (!tile) return fail(tile);
   Result<std::vector<ColumnInfo>> columns = pnts_columns(*tile, limit);
-  if (!columns) return fail(std::move(columns.error()));
+  if (!columns) return fail(columns);
   Result<PointTable> table = pnts_table(*tile, glm::dmat4(1), limit);
-  if (!table) return fail(std::move(table.error()));
+  if (!table) return fail(table);
   return std::make_unique<SlicedRows>(RowTraits(), std::move(*columns), std::move(*table));
 }
 

@@ -132,8 +132,8 @@ Result<std::vector<PotreeNode>> potree1_nodes(const fs::path& folder, const Json
     files.pop_back();
     const Result<TileFile> file =
         TileFile::open(folder, text_of(description, "octreeDir") + '/' + potree1_file(top, step, ".hrc"));
-    if (!file) return fail(file.error());
-    if (Status status = read_hrc(*file, top, step, chooser, nodes, files); !status) return fail(status.error());
+    if (!file) return fail(file);
+    if (Status status = read_hrc(*file, top, step, chooser, nodes, files); !status) return fail(status);
   }
   sort_nodes(nodes);
   return nodes;
@@ -150,7 +150,7 @@ Result<std::vector<PotreeNode>> potree2_nodes(const fs::path& folder, const Json
   };
   const Chooser chooser(cube, selection);
   const Result<TileFile> file = TileFile::open(folder, "hierarchy.bin");
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   std::vector<PotreeNode> nodes;
   std::vector<Page> pages{{"r", 0, integer_of(member(description, "hierarchy"), "firstChunkSize").value_or(0)}};
   std::set<uint64_t> seen;

@@ -142,20 +142,20 @@ Status parse_coding(const Json& json, PotreeScan& scan) {
 
 Result<PotreeScan> parse_cloud(const fs::path& path, const Selection& selection) {
   const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const Json json = Json::parse(as_text(file->bytes()), nullptr, false);
   if (!json.is_object()) return invalid_input("is no JSON object");
   PotreeScan scan;
   scan.folder = path.parent_path();
   const auto cube = cube_of(member(json, "boundingBox"), {"lx", "ly", "lz", "ux", "uy", "uz"});
-  if (!cube) return fail(cube.error());
+  if (!cube) return fail(cube);
   scan.cube = *cube;
   scan.scale = glm::dvec3(number_of(json, "scale", 0.01));
   scan.directory = text_of(json, "octreeDir");
   if (!member(json, "hierarchy").is_array()) scan.step = integer_of(json, "hierarchyStepSize").value_or(0);
-  if (Status status = parse_coding(json, scan); !status) return fail(status.error());
+  if (Status status = parse_coding(json, scan); !status) return fail(status);
   Result<std::vector<PotreeNode>> nodes = potree1_nodes(scan.folder, json, scan.cube, selection);
-  if (!nodes) return fail(std::move(nodes.error()));
+  if (!nodes) return fail(nodes);
   scan.nodes = std::move(*nodes);
   return scan;
 }
@@ -279,7 +279,7 @@ Result<Attribute> parse_attribute(const Json& json) {
 
 Result<PotreeScan> parse_metadata(const fs::path& path, const Selection& selection) {
   const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const Json json = Json::parse(as_text(file->bytes()), nullptr, false);
   PotreeScan scan;
   scan.folder = path.parent_path();
@@ -301,15 +301,15 @@ Result<PotreeScan> parse_metadata(const fs::path& path, const Selection& selecti
   scan.spacing = number_of(json, "spacing", 0);
   for (const Json& entry : member(json, "attributes")) {
     Result<Attribute> attribute = parse_attribute(entry);
-    if (!attribute) return fail(std::move(attribute.error()));
+    if (!attribute) return fail(attribute);
     scan.attributes.push_back(std::move(*attribute));
   }
   if (scan.attributes.empty()) return invalid_input("the Potree metadata name no attributes");
   Result<std::vector<PotreeNode>> nodes = potree2_nodes(scan.folder, json, scan.cube, selection);
-  if (!nodes) return fail(std::move(nodes.error()));
+  if (!nodes) return fail(nodes);
   scan.nodes = std::move(*nodes);
   Result<TileFile> points = TileFile::open(scan.folder, "octree.bin");
-  if (!points) return fail(std::move(points.error()));
+  if (!points) return fail(points);
   scan.points = std::make_shared<const TileFile>(std::move(*points));
   return scan;
 }
@@ -380,14 +380,14 @@ Result<PointTable> read_node2(const PotreeScan& scan, const PotreeNode& node) {
 Result<std::unique_ptr<RowSource>> potree1_rows(const fs::path& cloud, const DecodingLimit& limit,
                                                 const Selection& selection) {
   Result<PotreeScan> parsed = parse_cloud(cloud, selection);
-  if (!parsed) return fail(std::move(parsed.error()));
+  if (!parsed) return fail(parsed);
   const auto scan = std::make_shared<const PotreeScan>(std::move(*parsed));
   if (scan->nodes.empty())
     return invalid_input(selection.zone.everywhere() ? "has no points" : "has no points in the selection");
   std::vector<ColumnInfo> columns = scan->columns();
   if (scan->extension != ".bin") {
     const Result<TileFile> file = open_node(*scan, scan->nodes.front());
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     const auto rows = las_rows(file->bytes());
     if (!rows) return file->error(rows.error());
     columns = (*rows)->columns();
@@ -396,7 +396,7 @@ Result<std::unique_ptr<RowSource>> potree1_rows(const fs::path& cloud, const Dec
   tiles.read = [scan, columns = std::move(columns)](size_t tile) -> Result<PointTable> {
     const PotreeNode& node = scan->nodes[tile];
     const Result<TileFile> file = open_node(*scan, node);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     if (scan->extension != ".bin") return read_las_node(*file, columns);
     if (file->bytes().size() != node.points * scan->record_bytes()) {
       return file->error("has not the points that the hierarchy states");
@@ -410,7 +410,7 @@ Result<std::unique_ptr<RowSource>> potree1_rows(const fs::path& cloud, const Dec
 Result<std::unique_ptr<RowSource>> potree2_rows(const fs::path& metadata, const DecodingLimit& limit,
                                                 const Selection& selection) {
   Result<PotreeScan> parsed = parse_metadata(metadata, selection);
-  if (!parsed) return fail(std::move(parsed.error()));
+  if (!parsed) return fail(parsed);
   const auto scan = std::make_shared<const PotreeScan>(std::move(*parsed));
   TileSet tiles = tiles_of(*scan, scan->columns());
   tiles.read = [scan](size_t tile) { return read_node2(*scan, scan->nodes[tile]); };
@@ -419,7 +419,7 @@ Result<std::unique_ptr<RowSource>> potree2_rows(const fs::path& metadata, const 
 
 Result<Potree2Folder> open_potree2(const fs::path& metadata) {
   Result<PotreeScan> parsed = parse_metadata(metadata, {});
-  if (!parsed) return fail(std::move(parsed.error()));
+  if (!parsed) return fail(parsed);
   const auto scan = std::make_shared<const PotreeScan>(std::move(*parsed));
   return Potree2Folder{
       scan->cube,

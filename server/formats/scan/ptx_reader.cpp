@@ -49,16 +49,16 @@ Result<uint64_t> next_count(Tokens& tokens) {
 Result<Station> read_station(Tokens& tokens) {
   constexpr const char* kWhere = "a PTX header";
   const Result<uint64_t> columns = next_count(tokens);
-  if (!columns) return fail(columns.error());
+  if (!columns) return fail(columns);
   const Result<uint64_t> rows = next_count(tokens);
-  if (!rows) return fail(rows.error());
+  if (!rows) return fail(rows);
   Station station{*columns * *rows, {}};
   for (int i = 0; i < 12; ++i) {
-    if (const Result<double> number = next_number(tokens, kWhere); !number) return fail(number.error());
+    if (const Result<double> number = next_number(tokens, kWhere); !number) return fail(number);
   }
   for (double& entry : station.matrix) {
     const Result<double> number = next_number(tokens, kWhere);
-    if (!number) return fail(number.error());
+    if (!number) return fail(number);
     entry = *number;
   }
   return station;
@@ -113,8 +113,8 @@ Result<Layout> find_layout(Tokens tokens) {
   Layout layout;
   do {
     const Result<Station> station = read_station(tokens);
-    if (!station) return fail(station.error());
-    if (Status status = pass_points(tokens, *station, layout); !status) return fail(status.error());
+    if (!station) return fail(station);
+    if (Status status = pass_points(tokens, *station, layout); !status) return fail(status);
     layout.stations.push_back(station->matrix);
   } while (!Tokens(tokens).next().empty());
   if (layout.pieces.empty()) return fail(ErrorKind::kInvalidInput, "has no points");
@@ -145,7 +145,7 @@ class PtxRows : public RowSource {
     std::vector<double> values(piece.rows * layout_.columns);
     for (double& value : values) {
       const Result<double> number = next_number(piece.start, "the PTX points");
-      if (!number) return fail(number.error());
+      if (!number) return fail(number);
       value = *number;
     }
     for (size_t row = 0; row < piece.rows; ++row) place_point(&values[row * layout_.columns], piece.matrix);
@@ -182,7 +182,7 @@ bool looks_like_ptx(std::string_view text) {
 
 Result<std::unique_ptr<RowSource>> ptx_rows(std::span<const std::byte> bytes) {
   Result<Layout> layout = find_layout(Tokens(as_text(bytes)));
-  if (!layout) return fail(std::move(layout.error()));
+  if (!layout) return fail(layout);
   return std::make_unique<PtxRows>(std::move(*layout));
 }
 

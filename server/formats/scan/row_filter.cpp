@@ -21,7 +21,7 @@ Result<ColumnTriple> position_of(const std::vector<ColumnInfo>& columns) {
 
 Result<RowFilter> RowFilter::make(const std::vector<ColumnInfo>& columns, const Selection& selection) {
   const Result<ColumnTriple> position = position_of(columns);
-  if (!position) return fail(position.error());
+  if (!position) return fail(position);
   RowFilter filter;
   filter.selection_ = selection;
   filter.position_ = *position;

@@ -99,12 +99,12 @@ Result<AllPieces> read_pieces(const RowSource& rows, uint64_t kept, size_t bytes
   AllPieces all;
   oneapi::tbb::parallel_for(size_t{0}, rows.pieces(), [&](size_t i) {
     const Result<PointTable> table = rows.read(i);
-    samples[i] = table ? Result<PieceSample>(take_sample(*table, kept, i << 40, bytes)) : fail(table.error());
+    samples[i] = table ? Result<PieceSample>(take_sample(*table, kept, i << 40, bytes)) : fail(table);
     if (i > 0 || !table) return;
     for (const Column& column : table->columns) all.swapped.push_back(column.swapped);
   });
   for (Result<PieceSample>& sample : samples) {
-    if (!sample) return fail(std::move(sample.error()));
+    if (!sample) return fail(sample);
     all.pieces.push_back(std::move(*sample));
   }
   return all;
@@ -117,14 +117,14 @@ Result<RowSample> sample_rows(const RowSource& rows, uint64_t wanted) {
   if (bytes == 0 || wanted == 0) return fail(ErrorKind::kInvalidInput, "has no points");
   const uint64_t kept = kSpare * (wanted / rows.pieces() + 1);
   Result<AllPieces> all = read_pieces(rows, kept, bytes);
-  if (!all) return fail(std::move(all.error()));
+  if (!all) return fail(all);
   uint64_t of_rows = 0;
   uint64_t announced = rows.traits().announced;
   for (const PieceSample& piece : all->pieces) {
     of_rows += piece.of_rows;
     announced += piece.announced;
   }
-  if (Status whole = check_announced(of_rows, announced); !whole) return fail(std::move(whole.error()));
+  if (Status whole = check_announced(of_rows, announced); !whole) return fail(whole);
   RowTraits traits = rows.traits();
   traits.announced = 0;
   traits.sampled = true;

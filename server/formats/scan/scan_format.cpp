@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "scan/gltf_buffers.h"
 #include "scan/readers.h"
 #include "scan/text_tokens.h"

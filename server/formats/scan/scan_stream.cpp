@@ -64,21 +64,21 @@ Result<ColumnRoles> first_roles(const RowSource& rows) {
 /// Reads all pieces on all threads. Of several errors, returns the one of the first piece.
 Result<TableFacts> survey_rows(const RowSource& rows, const MappedFile* file) {
   const Result<ColumnRoles> roles = first_roles(rows);
-  if (!roles) return fail(roles.error());
+  if (!roles) return fail(roles);
   const bool unnamed = rows.columns()[0].name.empty();
   std::vector<Result<TableFacts>> facts(rows.pieces());
   oneapi::tbb::parallel_for(size_t{0}, rows.pieces(), [&](size_t i) {
     const Result<PointTable> table = rows.read(i);
-    facts[i] = table ? Result<TableFacts>(find_facts(*table, *roles, unnamed)) : fail(table.error());
+    facts[i] = table ? Result<TableFacts>(find_facts(*table, *roles, unnamed)) : fail(table);
     if (file != nullptr) file->release_pages();
   });
   TableFacts all;
   for (const Result<TableFacts>& piece : facts) {
-    if (!piece) return fail(piece.error());
+    if (!piece) return fail(piece);
     all.include(*piece);
   }
   Status whole = check_announced(all.rows, all.announced + rows.traits().announced);
-  if (!whole) return fail(std::move(whole.error()));
+  if (!whole) return fail(whole);
   return all;
 }
 
@@ -88,7 +88,7 @@ Result<TableFacts> survey_rows(const RowSource& rows, const MappedFile* file) {
 Status ScanStream::take_sample(std::optional<uint64_t> sample) {
   if (!sample) return {};
   Result<RowSample> taken = sample_rows(*rows_, *sample);
-  if (!taken) return fail(std::move(taken.error()));
+  if (!taken) return fail(taken);
   rows_ = std::move(taken->rows);
   facts_.points_of_file = taken->of_rows;
   return {};
@@ -100,7 +100,7 @@ Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesyst
       scan_format_of(bytes, path)
           .and_then([&](ScanFormat format) { return rows_of(format, bytes, path, opening.limit, opening.selection); })
           .and_then([&](std::unique_ptr<RowSource> all) { return select_rows(std::move(all), opening.selection); });
-  if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
+  if (!rows) return fail_about(path.string(), rows);
   rows_ = std::move(*rows);
   return examine_rows(path, opening);
 }
@@ -110,7 +110,7 @@ Status ScanStream::examine_folder(const ScanFolder& folder, const std::filesyste
       folder_rows(folder, opening.limit, opening.selection).and_then([&](std::unique_ptr<RowSource> all) {
         return select_rows(std::move(all), opening.selection);
       });
-  if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
+  if (!rows) return fail_about(path.string(), rows);
   rows_ = std::move(*rows);
   return examine_rows(path, opening);
 }
@@ -141,7 +141,7 @@ Status ScanStream::examine_rows(const std::filesystem::path& path, const Opening
 Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path,
                                             const DecodingLimit& limit) {
   ScanStream stream;
-  if (Status status = stream.examine(bytes, path, {limit, {}, {}}); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine(bytes, path, {limit, {}, {}}); !status) return fail(status);
   return stream;
 }
 
@@ -149,9 +149,9 @@ Result<ScanStream> ScanStream::of_rows_as(std::unique_ptr<RowSource> rows, const
                                           const Opening& opening) {
   ScanStream stream;
   Result<std::unique_ptr<RowSource>> selected = select_rows(std::move(rows), opening.selection);
-  if (!selected) return fail(selected.error().kind, path.string() + ": " + selected.error().message);
+  if (!selected) return fail_about(path.string(), selected);
   stream.rows_ = std::move(*selected);
-  if (Status status = stream.examine_rows(path, opening); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine_rows(path, opening); !status) return fail(status);
   return stream;
 }
 
@@ -169,17 +169,16 @@ Result<ScanStream> ScanStream::open_as(const std::filesystem::path& path, const 
   ScanStream stream;
   if (const std::optional<ScanFolder> folder = scan_folder_of(path)) {
     const Status status = stream.examine_folder(*folder, path, opening);
-    if (!status) return fail(status.error());
+    if (!status) return fail(status);
     return stream;
   }
   if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) {
     return fail(ErrorKind::kUnsupported, path.string() + ": a folder that holds no description of a scan");
   }
   Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   stream.file_ = std::move(*file);
-  if (Status status = stream.examine(stream.file_->bytes(), path, opening); !status)
-    return fail(std::move(status.error()));
+  if (Status status = stream.examine(stream.file_->bytes(), path, opening); !status) return fail(status);
   return stream;
 }
 
@@ -195,7 +194,7 @@ Result<ScanStream> ScanStream::reopen(const std::filesystem::path& path, const D
 
 Result<ScanPoints> ScanStream::read(size_t piece) const {
   const Result<PointTable> table = rows_->read(piece);
-  if (!table) return fail(table.error().kind, path_.string() + ": " + table.error().message);
+  if (!table) return fail_about(path_.string(), table);
   ScanPoints points = points_of(*table, facts_.meaning);
   if (file_) file_->release_pages();
   return points;
@@ -214,7 +213,7 @@ std::vector<std::filesystem::path> files_of_scan(const std::filesystem::path& pa
 Status check_header(const std::filesystem::path& path) {
   if (scan_folder_of(path)) return {};
   const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const Result<ScanFormat> format = scan_format_of(file->bytes(), path);
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   if (!format) return named(format.error());

@@ -22,7 +22,7 @@ class SelectedRows : public RowSource {
   [[nodiscard]] uint64_t held_bytes() const override { return rows_->held_bytes(); }
   [[nodiscard]] Result<PointTable> read(size_t piece) const override {
     const Result<PointTable> table = rows_->read(piece);
-    if (!table) return fail(table.error());
+    if (!table) return fail(table);
     return pick_rows(*table, filter_.chosen(*table));
   }
 

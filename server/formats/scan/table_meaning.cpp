@@ -159,7 +159,7 @@ Result<TableMeaning> decide_meaning(const RowSource& rows, const TableFacts& fac
   std::vector<bool> absent = absent_columns(columns, facts);
   keep_colors_together(columns, absent);
   Result<ColumnRoles> roles = assign_roles(columns, absent);
-  if (!roles) return fail(std::move(roles.error()));
+  if (!roles) return fail(roles);
   if (traits.sampled) roles->radius.reset();
   TableMeaning meaning;
   meaning.roles = std::move(*roles);

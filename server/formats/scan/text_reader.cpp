@@ -135,10 +135,10 @@ Result<Prologue> read_prologue(std::string_view text) {
     if (is_comment(line)) comment = line;
     if (line.empty() || is_comment(line)) continue;
     const Result<bool> is_row = take_line(line, header, prologue);
-    if (!is_row) return fail(is_row.error());
+    if (!is_row) return fail(is_row);
     if (!*is_row) continue;
     prologue.names = names_in(header.empty() ? comment : header, prologue.format);
-    if (Status status = check_columns(prologue, header); !status) return fail(status.error());
+    if (Status status = check_columns(prologue, header); !status) return fail(status);
     // The comment was no header.
     if (prologue.names.size() != prologue.format.columns || !names_coordinates(prologue.names)) prologue.names.clear();
     return prologue;
@@ -274,7 +274,7 @@ std::vector<std::string> text_column_names(std::string_view text) {
 Result<std::unique_ptr<RowSource>> text_rows(std::span<const std::byte> bytes) {
   const std::string_view text = without_mark(as_text(bytes));
   const Result<Prologue> prologue = read_prologue(text);
-  if (!prologue) return fail(prologue.error());
+  if (!prologue) return fail(prologue);
   return std::make_unique<TextRows>(text, *prologue);
 }
 

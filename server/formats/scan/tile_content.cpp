@@ -14,9 +14,9 @@ using Bytes = std::span<const std::byte>;
 
 Result<TileContent> open_pnts(Bytes bytes, const DecodingLimit& limit) {
   Result<PntsTile> parsed = parse_pnts(bytes);
-  if (!parsed) return fail(std::move(parsed.error()));
+  if (!parsed) return fail(parsed);
   Result<std::vector<ColumnInfo>> columns = pnts_columns(*parsed, limit);
-  if (!columns) return fail(std::move(columns.error()));
+  if (!columns) return fail(columns);
   const auto tile = std::make_shared<const PntsTile>(std::move(*parsed));
   return TileContent{std::move(*columns), tile->points, false,
                      [tile, limit](const glm::dmat4& transform) { return pnts_table(*tile, transform, limit); }};
@@ -26,7 +26,7 @@ Result<TileContent> open_pnts(Bytes bytes, const DecodingLimit& limit) {
 Result<TileContent> open_gltf(Bytes bytes, const std::filesystem::path& path, const glm::dvec3& centre,
                               const DecodingLimit& limit) {
   Result<GltfPoints> opened = GltfPoints::open(bytes, path, limit);
-  if (!opened) return fail(std::move(opened.error()));
+  if (!opened) return fail(opened);
   const auto points = std::make_shared<const GltfPoints>(std::move(*opened));
   glm::dmat4 to_tile = y_up_to_z_up();
   to_tile[3] = glm::dvec4(centre + points->centre().value_or(glm::dvec3(0)), 1);
@@ -36,7 +36,7 @@ Result<TileContent> open_gltf(Bytes bytes, const std::filesystem::path& path, co
 
 Result<TileContent> open_b3dm(Bytes bytes, const std::filesystem::path& path, const DecodingLimit& limit) {
   const Result<TileTables> tables = split_tile(bytes);
-  if (!tables) return fail(tables.error());
+  if (!tables) return fail(tables);
   return open_gltf(tables->body, path, centre_of(*tables), limit);
 }
 

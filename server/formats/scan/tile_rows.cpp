@@ -71,7 +71,7 @@ Result<TileFile> TileFile::open(const std::filesystem::path& folder, const std::
     return fail(ErrorKind::kNotFound, "names a file that is not there: " + printable(name));
   }
   Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return TileFile(std::move(*file), std::move(path), printable(name));
 }
 
@@ -101,7 +101,7 @@ Result<PointTable> all_rows(const RowSource& rows) {
   std::vector<bool> swapped(rows.columns().size());
   for (size_t piece = 0; piece < rows.pieces(); ++piece) {
     const Result<PointTable> table = rows.read(piece);
-    if (!table) return fail(table.error());
+    if (!table) return fail(table);
     append(*table, row_bytes, all.records);
     all.rows += table->rows;
     for (size_t i = 0; i < swapped.size(); ++i) swapped[i] = table->columns[i].swapped;

@@ -102,7 +102,7 @@ class TilesetWalk {
   Status read(const std::string& name, const Inherited& above) {
     if (above.depth > kDeepest) return invalid_input("tilesets are nested too deeply");
     const Result<TileFile> file = TileFile::open(folder_, name);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     const Json json = Json::parse(as_text(file->bytes()), nullptr, false);
     const Json& root = member(json, "root");
     if (!root.is_object()) return file->error("has no root tile");
@@ -127,7 +127,7 @@ class TilesetWalk {
     const std::string refine = text_of(tile, "refine");
     if (!refine.empty()) state.replace = refine == "REPLACE" || refine == "replace";
     const Result<std::optional<ImplicitTiling>> tiling = implicit_tiling_of(tile);
-    if (!tiling) return fail(tiling.error());
+    if (!tiling) return fail(tiling);
     if (*tiling) return add_subtree(**tiling, {}, base, state);
     const Json& children = member(tile, "children");
     const bool replaced = state.replace && !children.empty();
@@ -141,7 +141,7 @@ class TilesetWalk {
   Status add_subtree(const ImplicitTiling& tiling, const TileKey& root, const fs::path& base, const Inherited& state) {
     const Result<Subtree> subtree =
         Subtree::open(folder_, (base / name_of_tile(tiling.subtrees, root)).string(), tiling);
-    if (!subtree) return fail(subtree.error());
+    if (!subtree) return fail(subtree);
     if (!subtree->has_tile(0, 0)) return {};
     return add_implicit({tiling, *subtree, root}, base, state);
   }
@@ -179,9 +179,9 @@ class TilesetWalk {
     if (uri.empty() || uri.front() == '/') return invalid_input("a tile has content without a usable name");
     if (fs::path(uri).extension() == ".json") return read(name, state);
     const Result<TileFile> file = TileFile::open(folder_, name);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     const Result<TileContent> content = open_tile_content(*file, limit_);
-    if (!content) return fail(content.error());
+    if (!content) return fail(content);
     others_ = others_ || content->others;
     if (content->points == 0) return {};
     merge_columns(content->columns, columns_);
@@ -230,7 +230,7 @@ PointTable in_columns(const PointTable& table, const std::vector<ColumnInfo>& ow
 Result<std::unique_ptr<RowSource>> tileset_rows(const fs::path& path, const DecodingLimit& limit) {
   const fs::path folder = path.parent_path();
   TilesetWalk walk(folder, limit);
-  if (Status status = walk.read(path.filename().string(), {}); !status) return fail(status.error());
+  if (Status status = walk.read(path.filename().string(), {}); !status) return fail(status);
   TileSet tiles;
   tiles.columns = walk.columns();
   if (walk.others()) tiles.traits.notes.emplace_back("triangles and lines in its tiles are left out");
@@ -243,9 +243,9 @@ Result<std::unique_ptr<RowSource>> tileset_rows(const fs::path& path, const Deco
   tiles.read = [folder, limit, columns = tiles.columns,
                 contents = std::move(contents)](size_t index) -> Result<PointTable> {
     const Result<TileFile> file = TileFile::open(folder, contents[index].name);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     const Result<TileContent> content = open_tile_content(*file, limit);
-    if (!content) return fail(content.error());
+    if (!content) return fail(content);
     const Result<PointTable> table = content->table(contents[index].transform);
     if (!table) return file->error(table.error());
     return in_columns(*table, content->columns, columns);

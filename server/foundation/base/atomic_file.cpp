@@ -174,7 +174,7 @@ void remove_abandoned_files(const std::filesystem::path& folder) {
 
 Status write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes) {
   Result<AtomicFile> file = AtomicFile::create(target);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   if (Status status = file->append(bytes); !status) return status;
   return file->commit();
 }

@@ -98,7 +98,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
 Result<int> run_child(const std::vector<std::string>& arguments, const std::function<void(std::string_view)>& line,
                       const Preemption& preemption) {
   const Result<Child> child = start(arguments);
-  if (!child) return fail(child.error());
+  if (!child) return fail(child);
   bool told = false;
   {
     Lines lines(line);

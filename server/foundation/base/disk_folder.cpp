@@ -14,11 +14,10 @@ Result<std::vector<std::byte>> DiskFolder::read(const std::string& name, uint64_
     return fail(ErrorKind::kNotFound, "names a file that is not there: " + name);
   }
   const Result<PositionedFile> file = PositionedFile::open(folder_ / relative);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   if (file->size() > most) return fail(ErrorKind::kLimit, name + ": has more than " + std::to_string(most) + " bytes");
   std::vector<std::byte> bytes(file->size());
-  if (const Status read = file->read(0, bytes); !read)
-    return fail(read.error().kind, name + ": " + read.error().message);
+  if (const Status read = file->read(0, bytes); !read) return fail_about(name, read);
   return bytes;
 }
 

@@ -39,4 +39,20 @@ using Status = Result<void>;
   return tl::unexpected<Error>(std::move(error));
 }
 
+/// Passes on the error of a result that has no value.
+template <typename T>
+[[nodiscard]] tl::unexpected<Error> fail(const Result<T>& failed) {
+  return tl::unexpected<Error>(failed.error());
+}
+
+/// An error whose message begins with its subject, a file for example: "SUBJECT: MESSAGE".
+[[nodiscard]] inline tl::unexpected<Error> fail_about(const std::string& subject, const Error& error) {
+  return fail(error.kind, subject + ": " + error.message);
+}
+
+template <typename T>
+[[nodiscard]] tl::unexpected<Error> fail_about(const std::string& subject, const Result<T>& failed) {
+  return fail_about(subject, failed.error());
+}
+
 }  // namespace surfcast

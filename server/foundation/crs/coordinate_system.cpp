@@ -6,7 +6,7 @@ namespace surfcast::crs {
 
 Result<CoordinateSystem> read_system(std::string_view text) {
   const Result<const ProjFunctions*>& functions = load_proj();
-  if (!functions) return fail(functions.error());
+  if (!functions) return fail(functions);
   return (*functions)->read_system(text);
 }
 

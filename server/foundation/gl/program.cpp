@@ -32,7 +32,7 @@ Result<Program> make_program(const char* label, std::initializer_list<StageSourc
   Program program(glCreateProgram());
   for (const StageSource& stage : stages) {
     Result<GLuint> shader = compile(stage, defines);
-    if (!shader) return fail(std::move(shader.error()));
+    if (!shader) return fail(shader);
     glAttachShader(program.name(), *shader);
     glDeleteShader(*shader);  // deleted when it is detached
   }

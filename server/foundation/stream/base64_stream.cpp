@@ -45,7 +45,7 @@ Result<int> Base64Stream::next_digit() {
   for (;;) {
     if (used_ == filled_) {
       const Result<size_t> read = source_->read(input_);
-      if (!read) return fail(read.error());
+      if (!read) return fail(read);
       used_ = 0;
       filled_ = *read;
       if (filled_ == 0) return kEnd;
@@ -61,7 +61,7 @@ Result<bool> Base64Stream::decode_group() {
   std::array<int, 4> digits{};
   for (size_t i = 0; i < digits.size(); ++i) {
     const Result<int> digit = next_digit();
-    if (!digit) return fail(digit.error());
+    if (!digit) return fail(digit);
     if (*digit == kEnd && i == 0) return false;
     const bool after_padding = i > 0 && digits[i - 1] == kPadding;
     if (*digit == kEnd || (*digit == kPadding && i < 2) || (*digit != kPadding && after_padding)) return not_base64();
@@ -81,7 +81,7 @@ Result<size_t> Base64Stream::read(std::span<std::byte> out) {
   while (done < out.size()) {
     if (group_used_ == group_size_) {
       const Result<bool> more = decode_group();
-      if (!more) return fail(more.error());
+      if (!more) return fail(more);
       if (!*more) break;
     }
     const size_t part = std::min(group_size_ - group_used_, out.size() - done);

@@ -27,7 +27,7 @@ Status ByteStream::skip(uint64_t count) {
 
 Status read_exactly(ByteStream& stream, std::span<std::byte> out) {
   const Result<size_t> read = stream.read(out);
-  if (!read) return fail(read.error());
+  if (!read) return fail(read);
   if (*read < out.size()) return ends_early();
   return {};
 }

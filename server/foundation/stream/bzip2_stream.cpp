@@ -31,7 +31,7 @@ uint64_t Bzip2Stream::at_most() const {
 Status Bzip2Stream::refill() {
   state_.next_in = reinterpret_cast<char*>(input_.data());
   const Result<size_t> read = source_->read(input_);
-  if (!read) return fail(read.error());
+  if (!read) return fail(read);
   state_.avail_in = static_cast<unsigned>(*read);
   return {};
 }
@@ -51,7 +51,7 @@ Result<size_t> Bzip2Stream::read(std::span<std::byte> out) {
   size_t done = 0;
   while (done < out.size() && !ended_) {
     if (state_.avail_in == 0) {
-      if (Status status = refill(); !status) return fail(std::move(status.error()));
+      if (Status status = refill(); !status) return fail(status);
       if (state_.avail_in == 0) return fail(ErrorKind::kInvalidInput, "truncated: the compressed data ends too early");
     }
     const size_t wanted = std::min<size_t>(out.size() - done, std::numeric_limits<unsigned>::max());
@@ -60,7 +60,7 @@ Result<size_t> Bzip2Stream::read(std::span<std::byte> out) {
     const int code = BZ2_bzDecompress(&state_);
     done += wanted - state_.avail_out;
     if (code == BZ_STREAM_END) {
-      if (Status status = begin_next_part(); !status) return fail(std::move(status.error()));
+      if (Status status = begin_next_part(); !status) return fail(status);
     } else if (code != BZ_OK) {
       return fail(ErrorKind::kInvalidInput, "damaged compressed data (bzip2)");
     }

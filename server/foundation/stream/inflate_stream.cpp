@@ -44,7 +44,7 @@ Status InflateStream::refill() {
   if (state_.avail_in > 0) std::memmove(input_.data(), state_.next_in, state_.avail_in);
   state_.next_in = reinterpret_cast<Bytef*>(input_.data());
   const Result<size_t> read = source_->read(std::span(input_).subspan(state_.avail_in));
-  if (!read) return fail(read.error());
+  if (!read) return fail(read);
   state_.avail_in += static_cast<uInt>(*read);
   return {};
 }
@@ -66,7 +66,7 @@ Result<size_t> InflateStream::read(std::span<std::byte> out) {
   size_t done = 0;
   while (done < out.size() && !ended_) {
     if (state_.avail_in == 0) {
-      if (Status status = refill(); !status) return fail(std::move(status.error()));
+      if (Status status = refill(); !status) return fail(status);
       if (state_.avail_in == 0) return fail(ErrorKind::kInvalidInput, "truncated: the compressed data ends too early");
     }
     const size_t wanted = std::min<size_t>(out.size() - done, std::numeric_limits<uInt>::max());
@@ -75,7 +75,7 @@ Result<size_t> InflateStream::read(std::span<std::byte> out) {
     const int code = inflate(&state_, Z_NO_FLUSH);
     done += wanted - state_.avail_out;
     if (code == Z_STREAM_END) {
-      if (Status status = begin_next_member(); !status) return fail(std::move(status.error()));
+      if (Status status = begin_next_member(); !status) return fail(status);
     } else if (code != Z_OK && code != Z_BUF_ERROR) {
       return damaged(state_.msg);
     }

@@ -16,7 +16,7 @@ constexpr uint64_t kReleaseInterval = uint64_t{16} << 20;
 
 Result<FilePtr> open_shared(const std::filesystem::path& path) {
   Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return std::make_shared<const MappedFile>(std::move(*file));
 }
 

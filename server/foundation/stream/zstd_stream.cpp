@@ -39,7 +39,7 @@ Result<size_t> ZstdStream::read(std::span<std::byte> out) {
   while (output.pos < output.size) {
     if (used_ == filled_) {
       const Result<size_t> read = source_->read(input_);
-      if (!read) return fail(read.error());
+      if (!read) return fail(read);
       used_ = 0;
       filled_ = *read;
       if (filled_ == 0 && !within_frame_) break;

@@ -182,7 +182,7 @@ Status read_fields(const std::vector<model::Field>& fields, const Traits& traits
   if (!traits.merged) block.factors.assign(block.size(), 1.0F);
   for (size_t i = 0; i < traits.scalars.size(); ++i) {
     Result<surfel::ScalarValues> values = scalar_values(fields[at + i][0], traits.scalars[i]);
-    if (!values) return fail(std::move(values.error()));
+    if (!values) return fail(values);
     block.scalars.push_back({source.attributes[model::kDerivedAttributes + i].name, std::move(*values)});
   }
   return {};
@@ -250,8 +250,8 @@ Result<EllipsoidBlock> decode_ellipsoids(const model::StoredBlock& stored,
   const std::vector<size_t> columns = columns_of(traits);
   const Result<std::vector<model::Field>> fields =
       model::decode_fields(reader.rest(), columns, stored.items, columns.size());
-  if (!fields) return fail(fields.error());
-  if (Status status = read_fields(*fields, traits, zero, source, block); !status) return fail(status.error());
+  if (!fields) return fail(fields);
+  if (Status status = read_fields(*fields, traits, zero, source, block); !status) return fail(status);
   return block;
 }
 

@@ -37,12 +37,12 @@ bool is_vtk_point_set(const std::filesystem::path& path) {
 
 Result<InputPtr> open_ellipsoids(const std::filesystem::path& path, const InputOptions& options) {
   const Result<stream::FilePtr> file = stream::open_shared(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   if ((*file)->bytes().empty()) return fail(ErrorKind::kInvalidInput, path.string() + ": the file is empty");
   if (is_vtk_point_set(*file)) return open_vtk_tensors(*file, path, options);
   if (!grid::grid_format_of(*file)) return open_table(*file, path, options);
   Result<grid::GridReader> reader = grid::GridReader::open(path, {}, options.order);
-  if (!reader) return fail(std::move(reader.error()));
+  if (!reader) return fail(reader);
   if (reader->header().components() > 1) return open_grid_tensors(std::move(*reader), path, options);
   return fail(ErrorKind::kUnsupported, path.string() + ": has one number a sample and no tensors");
 }

@@ -91,7 +91,7 @@ class EllipsoidTable final : public EllipsoidInput {
 
   Result<Ellipsoids> read(model::EllipsoidCounts& counts) override {
     const Result<scan::ScanPoints> points = stream_.read(piece_++);
-    if (!points) return fail(points.error());
+    if (!points) return fail(points);
     file_->release_pages();
     const std::vector<std::vector<double>> columns = shape_columns(*points);
     ShapeColumns shapes = roles_.tensor.empty() ? shapes_of(axes_samples(*points, columns), counts)
@@ -208,7 +208,7 @@ Result<InputPtr> open_table(const stream::FilePtr& file, const std::filesystem::
   if (!roles) return named({ErrorKind::kUnsupported, "has no columns of semi-axes or of a tensor"});
   auto renamed = std::make_unique<TableRows>(file, std::move(*rows), roles->all());
   Result<scan::ScanStream> stream = scan::ScanStream::of_rows(std::move(renamed), path, options.sample);
-  if (!stream) return fail(std::move(stream.error()));
+  if (!stream) return fail(stream);
   if (Status fits = options.limit.check(stream->held_bytes()); !fits) return named(fits.error());
   return std::make_unique<EllipsoidTable>(file, std::move(*stream), std::move(*roles));
 }

@@ -65,7 +65,7 @@ class GridTensors final : public EllipsoidInput {
     const uint64_t first = reader_.position();
     const uint64_t count = std::min(kRun, header().samples() - first);
     values_.resize(count * header().components());
-    if (Status status = reader_.read(values_); !status) return fail(std::move(status.error()));
+    if (Status status = reader_.read(values_); !status) return fail(status);
     samples_.clear();
     for (uint64_t i = 0; i < count; ++i) add_sample(first + i, std::span(values_).subspan(i * header().components()));
     ShapeColumns shapes = shapes_of(samples_, counts);

@@ -30,7 +30,7 @@ struct PointSet {
 /// The first tensors of the points.
 Result<PointSet> find_tensors(std::string_view text) {
   const Result<grid::LegacyFile> file = grid::scan_vtk_legacy(text, grid::kVtkPointSets);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   if (file->points.count == 0) return fail(ErrorKind::kInvalidInput, "VTK: the data set has no points");
   const auto of_points = [&](const grid::LegacyArray& array) {
     return array.facts.role == grid::VtkRole::kTensors && !array.facts.of_cells &&
@@ -41,7 +41,7 @@ Result<PointSet> find_tensors(std::string_view text) {
     return fail(ErrorKind::kUnsupported, "VTK: not a regular grid, and its points have no tensors");
   }
   const Result<grid::SampleKind> kind = grid::kind_of(found->facts);
-  if (!kind) return fail(kind.error());
+  if (!kind) return fail(kind);
   return PointSet{file->binary, file->points, found->numbers, *kind};
 }
 
@@ -141,7 +141,7 @@ bool holds_vtk_tensors(const stream::FilePtr& file) {
 Result<InputPtr> open_vtk_tensors(const stream::FilePtr& file, const std::filesystem::path& path,
                                   const InputOptions& options) {
   const Result<PointSet> set = find_tensors(scan::as_text(file->bytes()));
-  if (!set) return fail(set.error().kind, path.string() + ": " + set.error().message);
+  if (!set) return fail_about(path.string(), set);
   const uint64_t points = set->points.count / 3;
   const uint64_t wanted = std::clamp<uint64_t>(options.sample.value_or(points), 1, points);
   return std::make_unique<VtkTensors>(file, path, *set, (points + wanted - 1) / wanted);

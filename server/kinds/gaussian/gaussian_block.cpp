@@ -150,7 +150,7 @@ Result<GaussianBlock> decode_gaussians(const model::StoredBlock& stored) {
   const std::vector<size_t> columns = columns_of(degree);
   const Result<std::vector<model::Field>> fields =
       model::decode_fields(reader.rest(), columns, stored.items, columns.size());
-  if (!fields) return fail(fields.error());
+  if (!fields) return fail(fields);
   if (!in_range(*fields, stored.extent)) return damaged("values out of range");
   read_codes(*fields, block.codes);
   return block;

@@ -33,7 +33,7 @@ Result<SourcePtr> open_source(GaussianFormat format, const stream::FilePtr& file
 Result<GaussianReader> GaussianReader::open(const std::filesystem::path& path, const scan::DecodingLimit& limit) {
   const std::filesystem::path content = std::filesystem::is_directory(path) ? path / "meta.json" : path;
   const Result<stream::FilePtr> file = stream::open_shared(content);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   const auto error = [&](const Error& e) { return fail(e.kind, content.string() + ": " + e.message); };
   if ((*file)->bytes().empty()) return error({ErrorKind::kInvalidInput, "the file is empty"});
   const std::optional<GaussianFormat> format = gaussian_format_of(*file, content);
@@ -47,7 +47,7 @@ Result<Gaussians> GaussianReader::read(uint64_t count) {
   const uint64_t wanted = std::min(count, traits().count - position_);
   Result<Gaussians> gaussians = source_->read(position_, wanted);
   if (!gaussians) {
-    return fail(gaussians.error().kind, path_.string() + ": " + gaussians.error().message);
+    return fail_about(path_.string(), gaussians);
   }
   position_ += wanted;
   keep_usable(*gaussians);

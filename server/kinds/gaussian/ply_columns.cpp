@@ -13,7 +13,7 @@ PlyColumns::PlyColumns(stream::FilePtr file, std::unique_ptr<scan::RowSource> ro
 
 Result<PlyColumns> PlyColumns::open(const stream::FilePtr& file, std::string_view element) {
   Result<std::unique_ptr<scan::RowSource>> rows = scan::ply_element_rows(file->bytes(), element);
-  if (!rows) return fail(std::move(rows.error()));
+  if (!rows) return fail(rows);
   return PlyColumns(file, std::move(*rows));
 }
 
@@ -24,7 +24,7 @@ scan::ScalarType PlyColumns::type(std::string_view name) const {
 Status PlyColumns::load(size_t piece) {
   if (loaded_ == piece) return {};
   Result<scan::PointTable> table = rows_->read(piece);
-  if (!table) return fail(std::move(table.error()));
+  if (!table) return fail(table);
   table_ = std::move(*table);
   loaded_ = piece;
   file_->release_pages();

@@ -54,7 +54,7 @@ size_t place_of_rest(size_t k, int degree) {
 
 Result<uint64_t> vertex_count(const stream::FilePtr& file) {
   const Result<scan::PlyHeader> header = scan::parse_ply_header(file->bytes());
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   const scan::PlyElement* vertex = find_element(*header, "vertex");
   if (vertex == nullptr || vertex->count == 0) return fail(ErrorKind::kInvalidInput, "has no Gaussians");
   return vertex->count;
@@ -68,7 +68,7 @@ class PlyGaussians final : public GaussianSource {
 
   Result<Gaussians> read(uint64_t first, uint64_t count) override {
     Gaussians gaussians = make_gaussians(count, traits_.degree);
-    if (Status status = read_into(first, count, gaussians); !status) return fail(std::move(status.error()));
+    if (Status status = read_into(first, count, gaussians); !status) return fail(status);
     return gaussians;
   }
 
@@ -148,7 +148,7 @@ Result<std::vector<Chunk>> read_chunks(PlyColumns& columns, uint64_t count) {
         if (!columns.has(name)) return fail(ErrorKind::kInvalidInput, "chunks without the property " + name);
         Status status = columns.for_each<float>(
             name, 0, count, [&](size_t i, float value) { (max ? chunks[i].max : chunks[i].min)[group][axis] = value; });
-        if (!status) return fail(std::move(status.error()));
+        if (!status) return fail(status);
       }
     }
   }
@@ -203,8 +203,8 @@ class CompressedPly final : public GaussianSource {
 
   Result<Gaussians> read(uint64_t first, uint64_t count) override {
     Gaussians gaussians = make_gaussians(count, traits_.degree);
-    if (Status status = read_vertices(first, count, gaussians); !status) return fail(std::move(status.error()));
-    if (Status status = read_harmonics(first, count, gaussians); !status) return fail(std::move(status.error()));
+    if (Status status = read_vertices(first, count, gaussians); !status) return fail(status);
+    if (Status status = read_harmonics(first, count, gaussians); !status) return fail(status);
     return gaussians;
   }
 
@@ -278,7 +278,7 @@ Result<std::vector<Chunk>> open_chunks(const stream::FilePtr& file, const scan::
                 "compressed PLY with fewer chunks than its " + std::to_string(vertices) + " vertices need");
   }
   Result<PlyColumns> columns = PlyColumns::open(file, "chunk");
-  if (!columns) return fail(std::move(columns.error()));
+  if (!columns) return fail(columns);
   return read_chunks(*columns, wanted);
 }
 
@@ -291,13 +291,13 @@ Result<std::optional<PlyColumns>> open_harmonics(const stream::FilePtr& file, co
     return fail(ErrorKind::kInvalidInput, "compressed PLY with fewer harmonics than vertices");
   }
   Result<PlyColumns> columns = PlyColumns::open(file, "sh");
-  if (!columns) return fail(std::move(columns.error()));
+  if (!columns) return fail(columns);
   const Result<int> degree = degree_of_rest(*columns);
-  if (!degree) return fail(degree.error());
+  if (!degree) return fail(degree);
   traits.degree = *degree;
   for (size_t k = 0; k < count_rest(*columns); ++k) {
     Status status = require_type(*columns, "f_rest_" + std::to_string(k), scan::ScalarType::kUint8);
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
   }
   return std::optional(std::move(*columns));
 }
@@ -315,15 +315,15 @@ PlyKind ply_kind_of(std::span<const std::byte> bytes) {
 Result<SourcePtr> open_ply(const stream::FilePtr& file) {
   GaussianTraits traits;
   const Result<uint64_t> count = vertex_count(file);
-  if (!count) return fail(count.error());
+  if (!count) return fail(count);
   traits.count = *count;
   Result<PlyColumns> columns = PlyColumns::open(file, "vertex");
-  if (!columns) return fail(std::move(columns.error()));
+  if (!columns) return fail(columns);
   Status status = require(*columns, {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1",
                                      "rot_0", "rot_1", "rot_2", "rot_3"});
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   const Result<int> degree = degree_of_rest(*columns);
-  if (!degree) return fail(degree.error());
+  if (!degree) return fail(degree);
   traits.degree = *degree;
   traits.flat = !columns->has("scale_2");
   traits.format = traits.flat ? "2DGS PLY" : "3DGS PLY";
@@ -338,17 +338,16 @@ Result<SourcePtr> open_compressed_ply(const stream::FilePtr& file) {
   if (!header || !count) return fail(header ? count.error() : header.error());
   traits.count = *count;
   Result<PlyColumns> vertices = PlyColumns::open(file, "vertex");
-  if (!vertices) return fail(std::move(vertices.error()));
+  if (!vertices) return fail(vertices);
   Status status = require(*vertices, {"packed_position", "packed_rotation", "packed_scale", "packed_color"});
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   for (const char* name : {"packed_position", "packed_rotation", "packed_scale", "packed_color"}) {
-    if (status = require_type(*vertices, name, scan::ScalarType::kUint32); !status)
-      return fail(std::move(status.error()));
+    if (status = require_type(*vertices, name, scan::ScalarType::kUint32); !status) return fail(status);
   }
   Result<std::vector<Chunk>> chunks = open_chunks(file, *header, traits.count);
-  if (!chunks) return fail(std::move(chunks.error()));
+  if (!chunks) return fail(chunks);
   Result<std::optional<PlyColumns>> harmonics = open_harmonics(file, *header, traits);
-  if (!harmonics) return fail(std::move(harmonics.error()));
+  if (!harmonics) return fail(harmonics);
   return std::make_unique<CompressedPly>(std::move(*vertices), std::move(*harmonics), std::move(*chunks),
                                          std::move(traits));
 }

@@ -42,7 +42,7 @@ Result<std::vector<std::byte>> read_to_end(zip_file_t* file, uint64_t most, cons
     if (read < 0) return fail(ErrorKind::kInvalidInput, zip_file_strerror(file));
     bytes.resize(before + static_cast<size_t>(read));
     if (read == 0) return bytes;
-    if (Status status = limit.check(bytes.size()); !status) return fail(std::move(status.error()));
+    if (Status status = limit.check(bytes.size()); !status) return fail(status);
     if (bytes.size() > most) return fail(ErrorKind::kLimit, "unpacks to far more than it is packed");
   }
 }
@@ -56,7 +56,7 @@ Result<std::vector<std::byte>> read_entry(zip_t* archive, const std::string& nam
   const bool sized = zip_stat_index(archive, index, 0, &information) == 0 && (information.valid & ZIP_STAT_COMP_SIZE);
   if (!file || !sized) return fail(ErrorKind::kInvalidInput, scan::printable(name) + ": " + zip_strerror(archive));
   Result<std::vector<std::byte>> bytes = read_to_end(file.get(), most_unpacked(information.comp_size), limit);
-  if (!bytes) return fail(bytes.error().kind, scan::printable(name) + ": " + bytes.error().message);
+  if (!bytes) return fail_about(scan::printable(name), bytes);
   return bytes;
 }
 
@@ -72,7 +72,7 @@ FetchFile files_in_folder(std::filesystem::path folder) {
       return fail(ErrorKind::kInvalidInput, "names a file that is not in its folder: " + scan::printable(name));
     }
     const Result<MappedFile> file = MappedFile::open(folder / name);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     return std::vector<std::byte>(file->bytes().begin(), file->bytes().end());
   };
 }

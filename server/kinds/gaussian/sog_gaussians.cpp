@@ -66,7 +66,7 @@ class PictureLoader {
   template <typename Check>
   Status load_if(const std::string& name, SogPicture& into, Check&& check) {
     const Result<std::vector<std::byte>> file = fetch_(name);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     const auto named = [&name](const Error& e) { return fail(e.kind, scan::printable(name) + ": " + e.message); };
     const Result<SogPicture> size = webp_size(*file);
     if (!size) return named(size.error());
@@ -113,14 +113,14 @@ Result<SogPictures> load_pictures(const SogMeta& meta, const FetchFile& fetch, c
                                    {&meta.scale_codes, &pictures.scales},
                                    {&meta.quats, &pictures.quats},
                                    {&meta.color_codes, &pictures.colors}}) {
-    if (Status status = loader.load(*name, meta.count, *into); !status) return fail(std::move(status.error()));
+    if (Status status = loader.load(*name, meta.count, *into); !status) return fail(status);
   }
   if (meta.palette) {
     Status status = loader.load_palette(*meta.palette, pictures.centroids);
     if (status) status = loader.load(meta.palette->labels, meta.count, pictures.labels);
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
   }
-  if (Status status = check_codes(meta, pictures); !status) return fail(std::move(status.error()));
+  if (Status status = check_codes(meta, pictures); !status) return fail(status);
   return pictures;
 }
 
@@ -197,9 +197,9 @@ class SogGaussians final : public GaussianSource {
 
 Result<SourcePtr> open_sog(std::string_view text, const FetchFile& fetch, const scan::DecodingLimit& limit) {
   Result<SogMeta> meta = parse_sog_meta(text);
-  if (!meta) return fail(std::move(meta.error()));
+  if (!meta) return fail(meta);
   Result<SogPictures> pictures = load_pictures(*meta, fetch, limit);
-  if (!pictures) return fail(std::move(pictures.error()));
+  if (!pictures) return fail(pictures);
   return std::make_unique<SogGaussians>(std::move(*meta), std::move(*pictures));
 }
 
@@ -212,9 +212,9 @@ Result<SourcePtr> open_sog_folder(const stream::FilePtr& meta, const std::filesy
 
 Result<SourcePtr> open_sog_zip(const stream::FilePtr& archive, const scan::DecodingLimit& limit) {
   const Result<FetchFile> fetch = files_in_zip(archive, limit);
-  if (!fetch) return fail(fetch.error());
+  if (!fetch) return fail(fetch);
   const Result<std::vector<std::byte>> meta = (*fetch)("meta.json");
-  if (!meta) return fail(meta.error());
+  if (!meta) return fail(meta);
   return open_sog(scan::as_text(*meta), *fetch, limit);
 }
 

@@ -118,7 +118,7 @@ class SpzGaussians final : public GaussianSource {
     next_ = 0;
     for (size_t column = 0; column < columns(); ++column) {
       Result<StreamPtr> stream = open_(static_cast<Column>(column));
-      if (!stream) return fail(std::move(stream.error()));
+      if (!stream) return fail(stream);
       streams_[column] = std::move(*stream);
     }
     return {};
@@ -128,17 +128,17 @@ class SpzGaussians final : public GaussianSource {
 
   Result<Gaussians> read(uint64_t first, uint64_t count) override {
     if (first < next_) {
-      if (Status status = restart(); !status) return fail(std::move(status.error()));
+      if (Status status = restart(); !status) return fail(status);
     }
     SURFCAST_EXPECTS(first == next_);
     Gaussians gaussians = make_gaussians(count, header_.degree);
     for (size_t column = 0; column < columns(); ++column) {
       Status status = read_column(static_cast<Column>(column), count, gaussians);
-      if (!status) return fail(std::move(status.error()));
+      if (!status) return fail(status);
     }
     next_ += count;
     if (next_ == traits_.count) {
-      if (Status status = check_ends(); !status) return fail(std::move(status.error()));
+      if (Status status = check_ends(); !status) return fail(status);
     }
     return gaussians;
   }
@@ -219,22 +219,22 @@ Status check_extensions(const SpzHeader& header, stream::ByteStream& after_heade
 Result<SourcePtr> open_packed(const stream::FilePtr& file) {
   std::array<std::byte, kHeader> head{};
   const StreamPtr stream = inflated(file);
-  if (Status status = read_exactly(*stream, head); !status) return fail(std::move(status.error()));
+  if (Status status = read_exactly(*stream, head); !status) return fail(status);
   const Result<SpzHeader> header = parse_header(head);
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   if (header->version == 4) return fail(ErrorKind::kInvalidInput, "SPZ version 4 within gzip");
   const auto widths = header->widths();
   const uint64_t width = std::accumulate(widths.begin(), widths.end(), uint64_t{0});
   if (stream->at_most() < width * header->count) return cannot_hold(*header);
-  if (Status status = check_extensions(*header, *stream); !status) return fail(std::move(status.error()));
+  if (Status status = check_extensions(*header, *stream); !status) return fail(status);
   auto source = std::make_unique<SpzGaussians>(*header, [file, header = *header](Column column) -> Result<StreamPtr> {
     const auto sizes = header.widths();
     const uint64_t before = std::accumulate(sizes.begin(), sizes.begin() + column, uint64_t{0});
     StreamPtr bytes = inflated(file);
-    if (Status status = bytes->skip(kHeader + before * header.count); !status) return fail(std::move(status.error()));
+    if (Status status = bytes->skip(kHeader + before * header.count); !status) return fail(status);
     return bytes;
   });
-  if (Status status = source->restart(); !status) return fail(std::move(status.error()));
+  if (Status status = source->restart(); !status) return fail(status);
   return source;
 }
 
@@ -272,7 +272,7 @@ Result<std::vector<Part>> parse_parts(std::span<const std::byte> bytes, const Sp
   if (table < kClearHeader || table > bytes.size() || bytes.size() - table < columns * 16) return cut_off();
   if ((header.flags & kExtensions) != 0) {
     Status status = check_clear_extensions(bytes.subspan(kClearHeader, table - kClearHeader));
-    if (!status) return fail(std::move(status.error()));
+    if (!status) return fail(status);
   }
   std::vector<Part> parts;
   uint64_t offset = table + columns * 16;
@@ -295,12 +295,12 @@ Result<SourcePtr> open_clear(const stream::FilePtr& file) {
   const auto bytes = file->bytes();
   if (bytes.size() < kClearHeader) return fail(ErrorKind::kInvalidInput, "truncated: ends within its SPZ header");
   const Result<SpzHeader> header = parse_header(bytes);
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   if (header->version != 4) {
     return fail(ErrorKind::kInvalidInput, "SPZ version " + std::to_string(header->version) + " without gzip");
   }
   Result<std::vector<Part>> parts = parse_parts(bytes, *header);
-  if (!parts) return fail(std::move(parts.error()));
+  if (!parts) return fail(parts);
   auto source = std::make_unique<SpzGaussians>(
       *header, [file, header = *header, parts = std::move(*parts)](Column column) -> Result<StreamPtr> {
         const Part part = parts[column];
@@ -309,7 +309,7 @@ Result<SourcePtr> open_clear(const stream::FilePtr& file) {
         if (stream->at_most() < header.widths()[column] * header.count) return cannot_hold(header);
         return StreamPtr(std::move(stream));
       });
-  if (Status status = source->restart(); !status) return fail(std::move(status.error()));
+  if (Status status = source->restart(); !status) return fail(status);
   return source;
 }
 

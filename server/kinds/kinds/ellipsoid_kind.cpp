@@ -15,7 +15,7 @@ namespace {
 Result<ellipsoid::EllipsoidBlock> decode_ellipsoid_block(const model::ModelFile& model, uint32_t block) {
   const model::Part part = model.part(block);
   const Result<model::StoredBlock> stored = part.model.stored(part.block);
-  if (!stored) return fail(stored.error());
+  if (!stored) return fail(stored);
   Result<ellipsoid::EllipsoidBlock> decoded = ellipsoid::decode_ellipsoids(*stored, part.model.ellipsoid_sources());
   if (!decoded) return fail(model.named(block, decoded.error()));
   decoded->source += part.first_ellipsoids;
@@ -35,13 +35,13 @@ uint64_t EllipsoidKind::texels(const model::ModelInfo& info, uint32_t items) con
 Result<residency::PackedBlock> EllipsoidKind::load(const model::ModelFile& model, uint32_t block,
                                                    bool attributes) const {
   const Result<ellipsoid::EllipsoidBlock> decoded = decode_ellipsoid_block(model, block);
-  if (!decoded) return fail(decoded.error());
+  if (!decoded) return fail(decoded);
   return pack_glyphs(*decoded, model.ellipsoid_sources()[decoded->source], attributes);
 }
 
 Result<std::shared_ptr<const SourceBlock>> EllipsoidKind::decode(const model::ModelFile& model, uint32_t block) const {
   Result<ellipsoid::EllipsoidBlock> decoded = decode_ellipsoid_block(model, block);
-  if (!decoded) return fail(std::move(decoded.error()));
+  if (!decoded) return fail(decoded);
   model::EllipsoidSource source = model.ellipsoid_sources()[decoded->source];
   return std::make_shared<const DecodedEllipsoids>(std::move(*decoded), std::move(source));
 }

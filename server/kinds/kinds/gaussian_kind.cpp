@@ -17,7 +17,7 @@ constexpr uint32_t kPage = residency::BlockPool::kPageTexels;
 
 Result<gaussian::GaussianBlock> decode_gaussian_block(const model::ModelFile& model, uint32_t block) {
   const Result<model::StoredBlock> stored = model.stored(block);
-  if (!stored) return fail(stored.error());
+  if (!stored) return fail(stored);
   Result<gaussian::GaussianBlock> decoded = gaussian::decode_gaussians(*stored);
   if (!decoded) return fail(model.named(block, decoded.error()));
   if (decoded->codes.traits.degree > model.part(block).model.info().harmonics_degree) {
@@ -72,7 +72,7 @@ uint64_t GaussianKind::texels(const model::ModelInfo& info, uint32_t items) cons
 Result<residency::PackedBlock> GaussianKind::load(const model::ModelFile& model, uint32_t block,
                                                   bool attributes) const {
   const Result<gaussian::GaussianBlock> decoded = decode_gaussian_block(model, block);
-  if (!decoded) return fail(decoded.error());
+  if (!decoded) return fail(decoded);
   gaussian::PackedGaussians packed = gaussian::pack_gaussians(decoded->codes, kPage);
   residency::PackedBlock result;
   result.lattice = {decoded->grid, decoded->origin, glm::ivec3(0), decoded->extent};
@@ -84,7 +84,7 @@ Result<residency::PackedBlock> GaussianKind::load(const model::ModelFile& model,
 
 Result<std::shared_ptr<const SourceBlock>> GaussianKind::decode(const model::ModelFile& model, uint32_t block) const {
   Result<gaussian::GaussianBlock> decoded = decode_gaussian_block(model, block);
-  if (!decoded) return fail(std::move(decoded.error()));
+  if (!decoded) return fail(decoded);
   return std::make_shared<const DecodedGaussians>(std::move(*decoded));
 }
 

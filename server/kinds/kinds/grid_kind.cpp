@@ -11,9 +11,9 @@ namespace surfcast::kinds {
 
 Result<residency::PackedBlock> GridKind::load(const model::ModelFile& model, uint32_t block, bool attributes) const {
   const Result<volume::Brick> brick = volume::read_brick(model, block);
-  if (!brick) return fail(brick.error());
+  if (!brick) return fail(brick);
   const Result<model::StoredBlock> stored = model.stored(block);
-  if (!stored) return fail(stored.error());
+  if (!stored) return fail(stored);
   residency::PackedBlock packed;
   packed.lattice = {stored->grid, stored->origin, glm::ivec3(0), stored->extent};
   packed.texels = volume::pack_brick(*brick);
@@ -30,7 +30,7 @@ uint64_t GridKind::texels(const model::ModelInfo& info, uint32_t items) const {
 
 Result<std::shared_ptr<const SourceBlock>> GridKind::decode(const model::ModelFile& model, uint32_t block) const {
   Result<volume::Brick> brick = volume::read_brick(model, block);
-  if (!brick) return fail(std::move(brick.error()));
+  if (!brick) return fail(brick);
   const model::Volume& volume = model.volumes()[brick->header.volume];
   return std::make_shared<const GridBlock>(std::move(*brick), volume);
 }

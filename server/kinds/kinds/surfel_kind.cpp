@@ -62,7 +62,7 @@ class SurfelHeader : public residency::BlockHeader {
 Result<residency::PackedBlock> SurfelKind::load(const model::ModelFile& model, uint32_t block, bool attributes) const {
   const Result<model::DecodedBlock> decoded =
       model.decode(block, attributes ? model::WantedScalars::kDrawn : model::WantedScalars::kNone);
-  if (!decoded) return fail(decoded.error());
+  if (!decoded) return fail(decoded);
   const bool oriented = model.part(block).model.info().oriented;
   residency::PackedSurfels packed;  // a block that was made of points may have none
   if (decoded->size() > 0) packed = residency::pack_block(*decoded, model.info().color_bits, oriented);
@@ -74,7 +74,7 @@ Result<residency::PackedBlock> SurfelKind::load(const model::ModelFile& model, u
 
 Result<std::shared_ptr<const SourceBlock>> SurfelKind::decode(const model::ModelFile& model, uint32_t block) const {
   Result<model::DecodedBlock> decoded = model.decode(block);
-  if (!decoded) return fail(std::move(decoded.error()));
+  if (!decoded) return fail(decoded);
   return std::make_shared<const DecodedSurfels>(std::move(*decoded), model.info(), model.part(block).model.info());
 }
 

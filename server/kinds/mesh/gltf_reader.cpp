@@ -39,7 +39,7 @@ class GltfModel {
     add_images();
     add_materials();
     const auto add = [this](const Json& node, const glm::dmat4& to_world) { return add_node(node, to_world); };
-    if (Status status = scan::visit_gltf_nodes(json_, add); !status) return fail(std::move(status.error()));
+    if (Status status = scan::visit_gltf_nodes(json_, add); !status) return fail(status);
     mesh_.contents = buffers_.contents();
     for (std::shared_ptr<const void>& content : decoded_) mesh_.contents.push_back(std::move(content));
     return std::move(mesh_);
@@ -108,7 +108,7 @@ Status GltfModel::add_node(const Json& node, const glm::dmat4& to_world) {
   if (!number) return {};
   if (integer_of(node, "skin")) note_once("skins are not used: the model is in its rest pose");
   const Result<const std::vector<Primitive>*> primitives = primitives_of(*number);
-  if (!primitives) return fail(primitives.error());
+  if (!primitives) return fail(primitives);
   for (const Primitive& primitive : **primitives) {
     const auto inside = [&](const glm::dvec3& p) { return finite(glm::dvec3(to_world * glm::dvec4(p, 1))); };
     const std::vector<glm::dvec3>& positions = primitive.parts.vertices->positions;
@@ -124,7 +124,7 @@ Result<const std::vector<Primitive>*> GltfModel::primitives_of(uint64_t mesh) {
   if (const auto known = primitives_.find(mesh); known != primitives_.end()) return &known->second;
   std::vector<Primitive> made;
   for (const Json& stated : member(element(member(json_, "meshes"), mesh), "primitives")) {
-    if (Status status = add_primitive(stated, made); !status) return fail(std::move(status.error()));
+    if (Status status = add_primitive(stated, made); !status) return fail(status);
   }
   return &primitives_.emplace(mesh, std::move(made)).first->second;
 }
@@ -133,7 +133,7 @@ Status GltfModel::add_primitive(const Json& stated, std::vector<Primitive>& made
   const uint64_t fallback = mesh_.materials.size() - 1;
   const auto material = static_cast<size_t>(std::min(integer_of(stated, "material").value_or(fallback), fallback));
   Result<std::optional<GltfTriangles>> read = read_gltf_triangles(json_, stated, uv_rules_[material], buffers_);
-  if (!read) return fail(std::move(read.error()));
+  if (!read) return fail(read);
   if (*read) {
     made.push_back({std::move(**read), material});
   } else {
@@ -146,10 +146,10 @@ Status GltfModel::add_primitive(const Json& stated, std::vector<Primitive>& made
 
 Result<Mesh> read_gltf(const ModelFile& file, const scan::DecodingLimit& limit) {
   const Result<scan::GltfParts> parts = scan::split_gltf(file.bytes());
-  if (!parts) return fail(parts.error());
-  if (Status status = scan::check_gltf_extensions(parts->json, kRead); !status) return fail(std::move(status.error()));
+  if (!parts) return fail(parts);
+  if (Status status = scan::check_gltf_extensions(parts->json, kRead); !status) return fail(status);
   Result<scan::GltfBuffers> buffers = scan::GltfBuffers::open(file.path, *parts, limit);
-  if (!buffers) return fail(std::move(buffers.error()));
+  if (!buffers) return fail(buffers);
   return GltfModel(file, *parts, std::move(*buffers)).read();
 }
 

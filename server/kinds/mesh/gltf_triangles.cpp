@@ -94,10 +94,10 @@ Result<std::optional<GltfTriangles>> read_gltf_triangles(const Json& json, const
   const std::string uvs = "TEXCOORD_" + std::to_string(uv.set);
   Result<PrimitiveValues> values =
       scan::read_gltf_primitive(json, stated, {"POSITION", "NORMAL", "COLOR_0", uvs}, buffers);
-  if (!values) return fail(std::move(values.error()));
+  if (!values) return fail(values);
   const std::shared_ptr<const Vertices> vertices = vertices_of(*values, uv, uvs);
   Result<std::vector<Triangle>> triangles = triangles_of(values->indices, mode, *vertices);
-  if (!triangles) return fail(std::move(triangles.error()));
+  if (!triangles) return fail(triangles);
   return std::optional(GltfTriangles{vertices, std::make_shared<const std::vector<Triangle>>(std::move(*triangles))});
 }
 

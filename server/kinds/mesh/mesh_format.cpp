@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "mesh/ply_mesh.h"
 #include "scan/gltf_buffers.h"
 #include "scan/gltf_points.h"

@@ -12,7 +12,7 @@ namespace {
 
 Result<ModelFile> open_file(const std::filesystem::path& path) {
   Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return ModelFile{path, std::make_shared<const MappedFile>(std::move(*file))};
 }
 
@@ -49,9 +49,9 @@ std::optional<MeshFormat> mesh_format_of(const std::filesystem::path& path, Face
 
 Result<Mesh> read_mesh(const std::filesystem::path& path, MeshFormat format, const scan::DecodingLimit& limit) try {
   const Result<ModelFile> file = open_file(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   Result<Mesh> mesh = read(*file, format, limit);
-  if (!mesh) return fail(mesh.error().kind, path.string() + ": " + mesh.error().message);
+  if (!mesh) return fail_about(path.string(), mesh);
   if (mesh->triangles() == 0) return fail(ErrorKind::kInvalidInput, path.string() + ": has no triangles");
   mesh->contents.push_back(file->content);
   return mesh;
@@ -61,11 +61,11 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, MeshFormat format, con
 
 Result<std::vector<std::filesystem::path>> files_of_mesh(const std::filesystem::path& path, MeshFormat format) {
   const Result<ModelFile> file = open_file(path);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   std::vector<std::filesystem::path> files{path};
   for (std::filesystem::path& named : named_parts(*file, format)) files.push_back(std::move(named));
   const Result<Mesh> mesh = read(*file, format, {});
-  if (!mesh) return fail(mesh.error().kind, path.string() + ": " + mesh.error().message);
+  if (!mesh) return fail_about(path.string(), mesh);
   for (const ImageSource& image : mesh->images) {
     if (!image.file.empty()) files.push_back(image.file);
   }

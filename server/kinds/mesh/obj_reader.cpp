@@ -210,7 +210,7 @@ Result<Corner> corner_of(const tinyobj::index_t& stated, const Vertices& vertice
   const Result<uint32_t> normal = index_of(stated.normal_index, vertices.normals.size());
   const Result<uint32_t> uv = index_of(stated.texcoord_index, vertices.uvs.size());
   for (const Result<uint32_t>* index : {&position, &normal, &uv}) {
-    if (!*index) return fail(index->error());
+    if (!*index) return fail(*index);
   }
   if (*position == kNone || !finite(vertices.positions[*position])) {
     return fail(ErrorKind::kInvalidInput, "OBJ face with a corner without a position");
@@ -227,7 +227,7 @@ Result<std::vector<std::vector<Triangle>>> triangles_of(const Loaded& loaded, co
       Triangle triangle;
       for (size_t k = 0; k < 3; ++k) {
         const Result<Corner> corner = corner_of(shape.mesh.indices[3 * face + k], vertices);
-        if (!corner) return fail(corner.error());
+        if (!corner) return fail(corner);
         triangle[k] = *corner;
       }
       const int stated = face < shape.mesh.material_ids.size() ? shape.mesh.material_ids[face] : -1;
@@ -249,14 +249,14 @@ void note_left_out(const std::vector<tinyobj::material_t>& materials, std::vecto
 }  // namespace
 
 Result<Mesh> read_obj(const ModelFile& file, const scan::DecodingLimit& limit) {
-  if (Status status = limit.check(file.bytes().size() * kBytesPerByte); !status) return fail(status.error());
-  if (Status status = check_polygons(scan::as_text(file.bytes())); !status) return fail(status.error());
+  if (Status status = limit.check(file.bytes().size() * kBytesPerByte); !status) return fail(status);
+  if (Status status = check_polygons(scan::as_text(file.bytes())); !status) return fail(status);
   Mesh mesh;
   const Result<Loaded> loaded = load(file, mesh.notes);
-  if (!loaded) return fail(loaded.error());
+  if (!loaded) return fail(loaded);
   const auto vertices = std::make_shared<const Vertices>(vertices_of(loaded->attributes));
   Result<std::vector<std::vector<Triangle>>> triangles = triangles_of(*loaded, *vertices);
-  if (!triangles) return fail(std::move(triangles.error()));
+  if (!triangles) return fail(triangles);
   NamedImages images(file.path, mesh.images);
   for (const tinyobj::material_t& material : loaded->materials) {
     mesh.materials.push_back(material_of(material, images));

@@ -45,7 +45,7 @@ Result<Texture> decode(std::span<const std::byte> bytes, const std::string& read
   const auto channels = static_cast<size_t>(std::clamp(spec.nchannels, 0, 4));
   const auto width = static_cast<uint64_t>(std::max(spec.width, 0));
   const auto height = static_cast<uint64_t>(std::max(spec.height, 0));
-  if (Status status = check(width, height); !status) return fail(std::move(status.error()));
+  if (Status status = check(width, height); !status) return fail(status);
   std::vector<uint8_t> values(width * height * channels);
   if (channels == 0 || spec.depth > 1 ||
       !input->read_image(0, 0, 0, static_cast<int>(channels), OIIO::TypeDesc::UINT8, values.data())) {

@@ -183,7 +183,7 @@ class MeshRows {
     std::vector<Corner> made;
     for (size_t k = 0; k < corners.size(); ++k) {
       const Result<Corner> corner = corner_of(row, k);
-      if (!corner) return fail(corner.error());
+      if (!corner) return fail(corner);
       made.push_back(*corner);
     }
     std::vector<Triangle>& own = triangles_of(row);
@@ -316,7 +316,7 @@ bool is_ply_mesh(std::span<const std::byte> bytes, FacePolicy faces) {
 
 Result<Mesh> read_ply_mesh(const ModelFile& file, const scan::DecodingLimit& limit) {
   const Result<PlyHeader> header = scan::parse_ply_header(file.bytes());
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   const PlyElement* vertex = find_element(*header, "vertex");
   const PlyElement* face = find_element(*header, "face");
   if (vertex == nullptr || face == nullptr || !find_corners(*face)) {
@@ -326,14 +326,14 @@ Result<Mesh> read_ply_mesh(const ModelFile& file, const scan::DecodingLimit& lim
     return fail(ErrorKind::kLimit, "PLY mesh of more than 4294967294 vertices");
   }
   // A face of 5 bytes with one corner makes nothing; a corner of one byte makes a triangle of 36 bytes and growth.
-  if (Status status = limit.check(file.bytes().size() * 80); !status) return fail(std::move(status.error()));
+  if (Status status = limit.check(file.bytes().size() * 80); !status) return fail(status);
   MeshRows rows(*vertex, *face);
   const Numbers numbers(file.bytes().subspan(header->data_offset), header->encoding);
-  if (Status status = read_elements(*header, numbers, rows); !status) return fail(std::move(status.error()));
+  if (Status status = read_elements(*header, numbers, rows); !status) return fail(status);
   Mesh mesh;
   add_patches(rows, texture_names(scan::as_text(file.bytes().first(header->data_offset))), file.path, mesh);
   for (const Patch& patch : mesh.patches) {
-    if (Status status = check_positions(patch); !status) return fail(std::move(status.error()));
+    if (Status status = check_positions(patch); !status) return fail(status);
   }
   return mesh;
 }

@@ -386,7 +386,7 @@ Status MeshPass::sample(const MaterialWork& work) {
 Result<MeshReport> MeshPass::run() {
   report_.triangles = mesh_.triangles();
   report_.notes = mesh_.notes;
-  if (Status status = find_work(); !status) return fail(std::move(status.error()));
+  if (Status status = find_work(); !status) return fail(status);
   for (const auto& [image, why] : missing_)
     report_.notes.push_back(why.message + "; its material's colour takes its place");
   plan_work();
@@ -394,7 +394,7 @@ Result<MeshReport> MeshPass::run() {
   bool culled = true;
   for (const MaterialWork& work : work_) {
     culled = culled && work.material->culled;
-    if (Status status = sample(work); !status) return fail(std::move(status.error()));
+    if (Status status = sample(work); !status) return fail(status);
   }
   report_.two_sided = !culled && !edges_.closed();
   return std::move(report_);

@@ -83,9 +83,9 @@ Result<Mesh> read_stl(const ModelFile& file, const scan::DecodingLimit& limit) {
     return fail(ErrorKind::kInvalidInput, "truncated: not as many STL triangles as the file states");
   }
   // Positions and indices of a triangle take 108 bytes, arrays grow by doubling; a facet of text has over 60 bytes.
-  if (Status status = limit.check(bytes.size() * 5); !status) return fail(std::move(status.error()));
+  if (Status status = limit.check(bytes.size() * 5); !status) return fail(status);
   Result<Soup> soup = binary ? read_binary(bytes) : read_text(scan::as_text(bytes));
-  if (!soup) return fail(std::move(soup.error()));
+  if (!soup) return fail(soup);
   Mesh mesh;
   mesh.z_up = true;  // STL comes from mechanical design
   mesh.materials.emplace_back();

@@ -9,7 +9,7 @@
 #include <dlfcn.h>
 #include <webp/decode.h>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "base/mapped_file.h"
 #include "mesh/decoder_module.h"
 #include "scan/text_tokens.h"
@@ -51,7 +51,7 @@ Result<Texture> decode_webp(Bytes bytes, const scan::DecodingLimit& limit) {
   }
   const auto width = static_cast<uint64_t>(features.width);
   const auto height = static_cast<uint64_t>(features.height);
-  if (Status status = check_size(width, height, limit); !status) return fail(std::move(status.error()));
+  if (Status status = check_size(width, height, limit); !status) return fail(status);
   Texture texture{features.width, features.height, {}};
   texture.texels.resize(width * height);
   auto* out = reinterpret_cast<uint8_t*>(texture.texels.data());
@@ -75,7 +75,7 @@ Result<DecodeFunction*> load_decoders() {
 
 Result<Texture> decode(Bytes bytes, const std::string& reader, const scan::DecodingLimit& limit) {
   static const Result<DecodeFunction*> decoders = load_decoders();
-  if (!decoders) return fail(decoders.error());
+  if (!decoders) return fail(decoders);
   Result<Texture> texture = fail(ErrorKind::kInternal, "cannot be decoded");
   const SizeCheck check = [&limit](uint64_t width, uint64_t height) { return check_size(width, height, limit); };
   (*decoders)(bytes, reader.c_str(), check, texture);

@@ -161,7 +161,7 @@ Result<Brick> decode_brick(std::span<const std::byte> bytes, const BrickHeader& 
   const bool finite = std::isfinite(brick.header.offset) && std::isfinite(brick.header.value(UINT16_MAX));
   if (!finite || !(brick.header.scale >= 0)) return damaged("its scale of values is wrong");
   Result<std::vector<uint16_t>> codes = unpack_codes(reader.rest(), stored_size(place.count));
-  if (!codes) return fail(std::move(codes.error()));
+  if (!codes) return fail(codes);
   brick.codes = std::move(*codes);
   set_range(brick);
   return brick;

@@ -10,7 +10,7 @@ namespace surfcast::volume {
 Result<Brick> read_brick(const model::ModelFile& model, uint32_t block) {
   const model::Part part = model.part(block);
   const Result<model::StoredBlock> stored = part.model.stored(part.block);
-  if (!stored) return fail(stored.error());
+  if (!stored) return fail(stored);
   const model::BrickRecord record = part.model.brick(part.block);
   BrickHeader place;
   place.volume = record.volume;

@@ -107,7 +107,7 @@ Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockS
   const std::vector<size_t> columns = layout.columns(shape.scalars.size());
   const Result<std::vector<Field>> fields =
       decode_fields(bytes.subspan(1), columns, shape.surfels, layout.first_scalar() + scalars);
-  if (!fields) return fail(fields.error());
+  if (!fields) return fail(fields);
   if (!in_range(*fields, layout, codes, shape)) return fail(ErrorKind::kInvalidInput, "values out of range");
 
   DecodedBlock block;

@@ -125,7 +125,7 @@ Result<std::vector<Field>> decode_fields(std::span<const std::byte> bytes, std::
   size_t wanted_pieces = 0;
   for (const size_t count : columns) {
     Result<FieldHead> head = read_head(reader, count);
-    if (!head) return fail(std::move(head.error()));
+    if (!head) return fail(head);
     for (int piece = 0; piece < piece_count(head->width); ++piece) {
       types.push_back({piece_bytes(head->width, piece), static_cast<uint8_t>(count)});
     }
@@ -135,7 +135,7 @@ Result<std::vector<Field>> decode_fields(std::span<const std::byte> bytes, std::
   std::vector<TableAttribute> table;
   if (!types.empty()) {
     auto decoded = decode_table(reader.rest(), types, rows, wanted_pieces);
-    if (!decoded) return fail(std::move(decoded.error()));
+    if (!decoded) return fail(decoded);
     table = std::move(*decoded);
   }
   std::vector<Field> fields;

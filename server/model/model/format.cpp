@@ -330,21 +330,21 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
   }
   // Older files have no statistics and end here.
   if (reader.ok() && !reader.rest().empty()) {
-    if (Status status = get_statistics(reader, directory); !status) return fail(std::move(status.error()));
+    if (Status status = get_statistics(reader, directory); !status) return fail(status);
   }
   if (header.version >= kKindsVersion) {
-    if (Status status = get_kinds(reader, directory); !status) return fail(std::move(status.error()));
+    if (Status status = get_kinds(reader, directory); !status) return fail(status);
   }
   if (header.version >= kScatterVersion) {
-    if (Status status = get_scatter(reader, directory); !status) return fail(std::move(status.error()));
+    if (Status status = get_scatter(reader, directory); !status) return fail(status);
   }
   if (header.version >= kVolumesVersion) {
-    if (Status status = get_volumes(reader, directory); !status) return fail(std::move(status.error()));
+    if (Status status = get_volumes(reader, directory); !status) return fail(status);
   } else if (std::ranges::find(directory.kinds, kGridKind) != directory.kinds.end()) {
     return damaged("model has bricks but no volumes");
   }
   if (header.version >= kEllipsoidsVersion) {
-    if (Status status = get_ellipsoid_sources(reader, directory); !status) return fail(std::move(status.error()));
+    if (Status status = get_ellipsoid_sources(reader, directory); !status) return fail(status);
   }
   if (!reader.ok() || !reader.rest().empty()) return damaged("model tables have a wrong length");
   if (directory.blocks.empty()) return damaged("model has no blocks");

@@ -12,19 +12,19 @@ namespace {
 
 Result<std::vector<std::byte>> read_range(const ByteSource& source, uint64_t first, uint64_t end) {
   std::vector<std::byte> bytes(end - first);
-  if (Status status = source.read(first, bytes); !status) return fail(std::move(status.error()));
+  if (Status status = source.read(first, bytes); !status) return fail(status);
   return bytes;
 }
 
 Result<Georeference> georeference_of(const ByteSource& source) {
   const Result<std::vector<std::byte>> head = read_range(source, 0, std::min<uint64_t>(source.size(), kHeaderBytes));
-  if (!head) return fail(head.error());
+  if (!head) return fail(head);
   const Result<ModelHeader> header = read_header(*head, source.size());
-  if (!header) return fail(header.error());
+  if (!header) return fail(header);
   if (header->georeference_offset == 0) return Georeference();
   const Result<std::vector<std::byte>> bytes =
       read_range(source, header->georeference_offset, header->directory_offset);
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   return read_georeference(*bytes);
 }
 
@@ -65,7 +65,7 @@ Result<Georeference> load_georeference(const ByteSource& source) {
 
 Result<Georeference> load_georeference(const std::filesystem::path& path) {
   Result<PositionedFile> file = PositionedFile::open(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return load_georeference(FileSource(std::move(*file), path));
 }
 

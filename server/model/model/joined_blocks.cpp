@@ -116,7 +116,7 @@ Result<DecodedBlock> JoinedBlocks::decode_own(const BlockOrigin& origin, WantedS
 
 Result<DecodedBlock> JoinedBlocks::decode_shared(uint32_t shared, WantedScalars scalars) const {
   const Result<std::shared_ptr<const ldc::CoarseCell>> cell = cell_of(shared);
-  if (!cell) return fail(cell.error());
+  if (!cell) return fail(cell);
   if ((**cell).surfels.empty()) return DecodedBlock();
   const ldc::CoarseAttributes attributes = attributes_of(info_, parts_->shared[shared].oriented, coarse_scalars_);
   surfel::SurfelCloud cloud = ldc::make_coarse_cloud((**cell).surfels, attributes);
@@ -131,7 +131,7 @@ Result<std::shared_ptr<const ldc::CoarseCell>> JoinedBlocks::cell_of(uint32_t sh
   const std::lock_guard lock(made.mutex);
   if (made.cell) return made.cell;
   const Result<std::vector<ldc::CoarseSurfel>> below = surfels_below(shared);
-  if (!below) return fail(below.error());
+  if (!below) return fail(below);
   made.cell = std::make_shared<const ldc::CoarseCell>(make_cell(*below, parts_->shared[shared]));
   made.done.store(true, std::memory_order_release);
   return made.cell;
@@ -147,7 +147,7 @@ Result<std::vector<ldc::CoarseSurfel>> JoinedBlocks::surfels_below(uint32_t shar
   });
   std::vector<ldc::CoarseSurfel> all;
   for (const Result<std::vector<ldc::CoarseSurfel>>& child : children) {
-    if (!child) return fail(child.error());
+    if (!child) return fail(child);
     all.insert(all.end(), child->begin(), child->end());
   }
   return all;

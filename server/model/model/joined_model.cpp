@@ -309,7 +309,7 @@ Status check_place(const Member& member) {
 
 Result<JoinedTables> join_tables(std::vector<Member> members) {
   SURFCAST_EXPECTS(!members.empty());
-  if (Status status = check_members(members); !status) return fail(std::move(status.error()));
+  if (Status status = check_members(members); !status) return fail(status);
   JoinedTables tables;
   describe(members, tables);
   std::vector<std::vector<ldc::BlockEntry>> entries;

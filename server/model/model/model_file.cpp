@@ -30,10 +30,6 @@ struct ModelFile::State {
 
 namespace {
 
-tl::unexpected<Error> fail_naming(const std::filesystem::path& path, const Error& error) {
-  return fail(error.kind, path.string() + ": " + error.message);
-}
-
 ldc::BlockEntry make_entry(const BlockRecord& record, const surfel::Grid& grid) {
   ldc::BlockEntry entry;
   entry.parent = record.parent;
@@ -100,19 +96,19 @@ uint64_t next_id() {
 
 Result<std::vector<std::byte>> load(const ByteSource& source, uint64_t offset, uint64_t size) {
   std::vector<std::byte> bytes(size);
-  if (Status status = source.read(offset, bytes); !status) return fail(std::move(status.error()));
+  if (Status status = source.read(offset, bytes); !status) return fail(status);
   return bytes;
 }
 
 Result<ModelHeader> load_header(const ByteSource& source) {
   const Result<std::vector<std::byte>> head = load(source, 0, std::min<uint64_t>(source.size(), kHeaderBytes));
-  if (!head) return fail(head.error());
+  if (!head) return fail(head);
   return read_header(*head, source.size());
 }
 
 Result<Directory> load_directory(const ByteSource& source, const ModelHeader& header) {
   const Result<std::vector<std::byte>> bytes = load(source, header.directory_offset, header.directory_bytes);
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   return read_directory(*bytes, header);
 }
 
@@ -148,24 +144,24 @@ ModelFile::~ModelFile() = default;
 
 Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   Result<PositionedFile> file = PositionedFile::open(path);
-  if (!file) return fail(std::move(file.error()));
+  if (!file) return fail(file);
   return open(std::make_unique<FileSource>(std::move(*file), path));
 }
 
 Result<ModelFile> ModelFile::open(std::unique_ptr<const ByteSource> source, std::shared_ptr<BlockCache> cache) {
   const std::filesystem::path path = source->name();
   const Result<ModelHeader> header = load_header(*source);
-  if (!header) return fail_naming(path, header.error());
+  if (!header) return fail_about(path.string(), header);
   Result<Directory> directory = load_directory(*source, *header);
-  if (!directory) return fail_naming(path, directory.error());
+  if (!directory) return fail_about(path.string(), directory);
 
   std::vector<ldc::BlockEntry> entries = make_entries(*directory);
   if (!valid_tree(entries)) {
-    return fail_naming(path, {ErrorKind::kInvalidInput, "the blocks of the model make no tree"});
+    return fail_about(path.string(), Error{ErrorKind::kInvalidInput, "the blocks of the model make no tree"});
   }
   set_levels(entries);
   if (!valid_pyramids(*directory, entries)) {
-    return fail_naming(path, {ErrorKind::kInvalidInput, "the bricks of the model make no pyramid"});
+    return fail_about(path.string(), Error{ErrorKind::kInvalidInput, "the bricks of the model make no pyramid"});
   }
   ModelInfo info = make_info(*header, *directory, entries);
   std::vector<bool> coarse(entries.size());
@@ -187,7 +183,7 @@ ModelFile ModelFile::of_blocks(const std::filesystem::path& path, ModelInfo info
 
 Result<ModelFile> ModelFile::join(std::vector<Member> members) {
   Result<JoinedTables> tables = join_tables(std::move(members));
-  if (!tables) return fail(std::move(tables.error()));
+  if (!tables) return fail(tables);
   auto parts = std::make_shared<const JoinedParts>(std::move(tables->parts));
   std::string path;
   for (const Member& member : parts->members) path += (path.empty() ? "" : "+") + member.name;

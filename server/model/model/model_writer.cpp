@@ -114,8 +114,8 @@ Result<ModelWriter> ModelWriter::create(const std::filesystem::path& target, Mod
     return fail(ErrorKind::kLimit, target.string() + ": more attributes than a model holds");
   }
   Result<AtomicFile> file = AtomicFile::create(target);
-  if (!file) return fail(std::move(file.error()));
-  if (Status status = file->append(write_header({})); !status) return fail(std::move(status.error()));
+  if (!file) return fail(file);
+  if (Status status = file->append(write_header({})); !status) return fail(status);
   return ModelWriter(std::make_unique<State>(std::move(*file), std::move(schema)));
 }
 
@@ -130,7 +130,7 @@ Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const ldc::OctreeKe
   record.kind = static_cast<uint8_t>(index_of(block.kind, state_->kinds));
   record.brick = static_cast<uint32_t>(state_->bricks.size());
   if (block.brick) state_->bricks.push_back(*block.brick);
-  if (Status status = state_->file.append(block.bytes); !status) return fail(std::move(status.error()));
+  if (Status status = state_->file.append(block.bytes); !status) return fail(status);
   for (const uint32_t child : children) {
     SURFCAST_EXPECTS(child < number && state_->records[child].parent == ldc::BlockEntry::kNoParent);
     SURFCAST_EXPECTS(state_->records[child].kind == record.kind);
@@ -191,7 +191,7 @@ Result<WriteReport> ModelWriter::finish() {
   if (status) status = file.append(tables);
   if (status) status = file.overwrite(0, header);
   if (status) status = file.commit();
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   WriteReport report{0, directory.blocks.size(), file.position()};
   for (size_t i = 0; i < state_->records.size(); ++i) {
     const BlockRecord& record = state_->records[i];

@@ -59,7 +59,7 @@ Result<StoredBlock> StoredBlocks::stored(size_t block) const {
   const StoredBlock stored_block{
       bytes, directory_->grids[record.grid], record.origin, record.extent, record.surfels, record.scatter};
   if (cache_ && cache_->read(record.checksum, bytes)) return stored_block;
-  if (Status read = source_->read(record.offset, bytes); !read) return fail(std::move(read.error()));
+  if (Status read = source_->read(record.offset, bytes); !read) return fail(read);
   if (checksum_of(bytes) != record.checksum) return fail(ErrorKind::kInvalidInput, "damaged");
   if (cache_) cache_->write(record.checksum, bytes);
   return stored_block;
@@ -67,7 +67,7 @@ Result<StoredBlock> StoredBlocks::stored(size_t block) const {
 
 Result<DecodedBlock> StoredBlocks::decode(size_t block, WantedScalars scalars) const {
   const Result<StoredBlock> stored_block = stored(block);
-  if (!stored_block) return fail(stored_block.error());
+  if (!stored_block) return fail(stored_block);
   const BlockRecord& record = directory_->blocks[block];
   if (directory_->kinds[record.kind] != kSurfelKind) return fail(ErrorKind::kUnsupported, "has no surfels");
   BlockShape shape;

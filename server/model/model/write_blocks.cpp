@@ -62,7 +62,7 @@ Status write_blocks(ModelWriter& writer, const surfel::SurfelCloud& cloud, std::
   return encode_blocks(cloud, blocks, [&](size_t i, const EncodedBlock& block) -> Status {
     const Result<uint32_t> added = writer.add(block, blocks[i].key, blocks[i].children);
     if (progress) progress(i + 1);
-    return added ? Status() : fail(added.error());
+    return added ? Status() : fail(added);
   });
 }
 

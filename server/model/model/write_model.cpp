@@ -56,10 +56,10 @@ Status check(const surfel::SurfelCloud& cloud, const WriteOptions& options) {
 Result<WriteReport> write_model(const surfel::SurfelCloud& cloud, const std::filesystem::path& target,
                                 const WriteOptions& options) {
   if (const Status status = check(cloud, options); !status) {
-    return fail(status.error().kind, target.string() + ": " + status.error().message);
+    return fail_about(target.string(), status);
   }
   Result<ModelWriter> writer = ModelWriter::create(target, schema_of(cloud));
-  if (!writer) return fail(std::move(writer.error()));
+  if (!writer) return fail(writer);
   ldc::PartitionOptions partition;
   partition.precision = options.precision;
   const ldc::Subtree tree = ldc::build_subtree(cloud, ldc::whole_region(cloud), partition, 0);
@@ -67,7 +67,7 @@ Result<WriteReport> write_model(const surfel::SurfelCloud& cloud, const std::fil
     if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(tree.blocks.size()));
   };
   if (Status status = write_blocks(*writer, cloud, tree.blocks, progress); !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   return writer->finish();
 }

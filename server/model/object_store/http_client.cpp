@@ -52,11 +52,11 @@ struct HttpClient::Attempts {
 
 Result<std::unique_ptr<HttpClient>> HttpClient::start(const StoreConfig& config) {
   const Result<const HttpFunctions*>& functions = load_http();
-  if (!functions) return fail(functions.error());
+  if (!functions) return fail(functions);
   const HttpLimits limits{config.requests, config.connect_timeout, config.stall_timeout, config.least_rate,
                           config.authorities.string()};
   const Result<void*> client = (*functions)->start(limits);
-  if (!client) return fail(client.error());
+  if (!client) return fail(client);
   return std::unique_ptr<HttpClient>(new HttpClient(config, **functions, *client));
 }
 

@@ -12,7 +12,7 @@
 
 #include <curl/curl.h>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 
 namespace surfcast::object_store {
 namespace {
@@ -44,12 +44,6 @@ struct Transfer {
     return code;
   }
 };
-
-std::string_view trimmed(std::string_view text) {
-  const size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
 
 void forget_answer(HttpAnswer& answer) {
   const Clock::time_point sent = answer.sent;

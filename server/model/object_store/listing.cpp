@@ -24,7 +24,7 @@ std::string text_of(const scan::XmlNode& node, std::string_view name) {
 
 Result<ListingPage> parse_s3(std::string_view text, std::string_view prefix) {
   const Result<scan::XmlNode> root = scan::parse_xml(text);
-  if (!root) return fail(root.error());
+  if (!root) return fail(root);
   if (root->name != "ListBucketResult") {
     return fail(ErrorKind::kUnsupported, "the store's list is XML, but not that of S3: <" + root->name + ">");
   }

@@ -120,7 +120,7 @@ std::string object_name(std::string_view url) {
 
 Result<StorePlace> place_of(std::string_view url, const StoreConfig& config) {
   if (!url.starts_with(kS3)) {
-    if (Status status = check_http(url); !status) return fail(std::move(status.error()));
+    if (Status status = check_http(url); !status) return fail(status);
     return StorePlace{std::string(url), {}, false};
   }
   return split_s3(url).map([&](const S3Name& name) {

@@ -47,7 +47,7 @@ class RemoteFolder::State : public std::enable_shared_from_this<RemoteFolder::St
     start_more();
     Result<std::vector<std::byte>> bytes = fetch->bytes;
     lock.unlock();
-    if (!bytes) return fail(bytes.error().kind, name + ": " + bytes.error().message);
+    if (!bytes) return fail_about(name, bytes);
     if (bytes->size() <= most) return bytes;
     return fail(ErrorKind::kLimit, name + ": has more than " + std::to_string(most) + " bytes");
   }
@@ -103,7 +103,7 @@ class RemoteFolder::State : public std::enable_shared_from_this<RemoteFolder::St
     const Result<StorePlace> place = place_of(join_url(url_, name), client_.config());
     if (!place) {
       fetch->done = true;
-      fetch->bytes = fail(place.error());
+      fetch->bytes = fail(place);
       return;
     }
     HttpRequest request = client_.request(*place);

@@ -243,7 +243,7 @@ Result<std::unique_ptr<RemoteSource>> RemoteSource::open(const HttpClient& clien
   Result<HttpAnswer> answer = client.send_and_wait(std::move(request), [&version](const HttpAnswer& first) {
     return check_first_answer(first, kFirstBytes, version);
   });
-  if (!answer) return fail(answer.error().kind, name + ": " + answer.error().message);
+  if (!answer) return fail_about(name, answer);
   auto state = std::make_shared<State>(client, place, name, std::move(version), std::move(answer->body));
   return std::unique_ptr<RemoteSource>(new RemoteSource(std::move(state)));
 }

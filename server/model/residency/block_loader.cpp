@@ -18,7 +18,7 @@ size_t bytes_of(const LoadedBlock& loaded) {
 Result<std::shared_ptr<const PackedBlock>> load_block(const BlockSource& source, const BlockId& id) {
   try {
     Result<PackedBlock> packed = source.load(id.block, id.attributes);
-    if (!packed) return fail(std::move(packed.error()));
+    if (!packed) return fail(packed);
     return std::make_shared<const PackedBlock>(std::move(*packed));
   } catch (const std::exception& error) {
     return fail(ErrorKind::kInternal, std::string("unexpected: ") + error.what());
@@ -29,7 +29,7 @@ Result<std::shared_ptr<const PackedBlock>> load_block(const BlockSource& source,
 Result<std::shared_ptr<const PackedBlock>> load_guarded(const BlockSource& source, const BlockId& id,
                                                         LoadGuard* guard) {
   if (guard == nullptr) return load_block(source, id);
-  if (Status entered = guard->enter(id); !entered) return fail(std::move(entered.error()));
+  if (Status entered = guard->enter(id); !entered) return fail(entered);
   Result<std::shared_ptr<const PackedBlock>> loaded = load_block(source, id);
   guard->leave(id);
   return loaded;

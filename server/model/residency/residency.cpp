@@ -97,7 +97,7 @@ Status Residency::load(const ViewedModel& model, std::span<const uint32_t> block
     view.decode_ms += loaded->milliseconds;
     if (!loaded->block || !store(model, *loaded, view)) {
       give_up();
-      if (!loaded->block) return fail(loaded->block.error());
+      if (!loaded->block) return fail(loaded->block);
       break;
     }
   }
@@ -110,8 +110,7 @@ Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const
   PreparedView view;
   pool_.begin_frame();
   const std::vector<uint32_t> roots = missing(model, coarse_roots(model, parameters), parameters.attributes);
-  if (Status status = load(model, roots, parameters.attributes, preemption, view); !status)
-    return fail(std::move(status.error()));
+  if (Status status = load(model, roots, parameters.attributes, preemption, view); !status) return fail(status);
 
   const Stopwatch select_watch;
   view.selection = select(model, parameters, {});
@@ -119,8 +118,7 @@ Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const
   use(model, view.selection.target);
   const std::vector<uint32_t> wanted = missing(model, view.selection.target, parameters.attributes);
   view.waited_for = static_cast<uint32_t>(roots.size() + wanted.size());
-  if (Status status = load(model, wanted, parameters.attributes, preemption, view); !status)
-    return fail(std::move(status.error()));
+  if (Status status = load(model, wanted, parameters.attributes, preemption, view); !status) return fail(status);
 
   const Stopwatch draw_watch;
   if (!wanted.empty()) view.selection = select(model, parameters, {});

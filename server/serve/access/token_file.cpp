@@ -57,7 +57,7 @@ Result<std::vector<Principal>> to_principals(const json& document) {
   std::set<std::string> names;
   for (const json& entry : document.at("tokens")) {
     Result<Principal> principal = to_principal(entry);
-    if (!principal) return fail(principal.error());
+    if (!principal) return fail(principal);
     if (!names.insert(principal->name).second) {
       return fail(ErrorKind::kInvalidInput, "two tokens are named '" + principal->name + "'");
     }
@@ -74,7 +74,7 @@ Result<std::vector<Principal>> read_tokens(const fs::path& file) {
   try {
     auto principals = to_principals(json::parse(stream));
     if (principals) return principals;
-    return fail(principals.error().kind, file.string() + ": " + principals.error().message);
+    return fail_about(file.string(), principals);
   } catch (const json::exception&) {
     return fail(ErrorKind::kInvalidInput, file.string() + ": not a file of tokens");
   }

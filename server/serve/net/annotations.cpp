@@ -71,24 +71,24 @@ Result<json> position_in(const json& object, const std::string& where) {
 }
 
 Result<json> view_of(const json& entry, const std::string& where) {
-  if (Status status = check_members(entry, {"name", "parameters"}, where); !status) return fail(status.error());
+  if (Status status = check_members(entry, {"name", "parameters"}, where); !status) return fail(status);
   Result<std::string> name = text_in(entry, "name", kMaxViewNameBytes, where);
-  if (!name) return fail(name.error());
+  if (!name) return fail(name);
   Result<json> parameters = parameters_in(entry, where);
-  if (!parameters) return fail(parameters.error());
+  if (!parameters) return fail(parameters);
   return json{{"name", std::move(*name)}, {"parameters", std::move(*parameters)}};
 }
 
 Result<json> annotation_of(const json& entry, const std::string& where) {
   if (Status status = check_members(entry, {"text", "position", "parameters"}, where); !status) {
-    return fail(status.error());
+    return fail(status);
   }
   Result<std::string> text = text_in(entry, "text", kMaxAnnotationTextBytes, where);
-  if (!text) return fail(text.error());
+  if (!text) return fail(text);
   Result<json> position = position_in(entry, where);
-  if (!position) return fail(position.error());
+  if (!position) return fail(position);
   Result<json> parameters = parameters_in(entry, where);
-  if (!parameters) return fail(parameters.error());
+  if (!parameters) return fail(parameters);
   return json{{"text", std::move(*text)}, {"position", std::move(*position)}, {"parameters", std::move(*parameters)}};
 }
 
@@ -102,7 +102,7 @@ Result<json> entries_of(const json& document, const char* list, const std::strin
   if (!found->is_array()) return wrong(std::string(list) + " is not a list");
   for (size_t i = 0; i < found->size(); ++i) {
     Result<json> entry = normalize((*found)[i], entry_name + ' ' + std::to_string(i + 1));
-    if (!entry) return fail(entry.error());
+    if (!entry) return fail(entry);
     entries.push_back(std::move(*entry));
   }
   return entries;
@@ -140,14 +140,14 @@ Result<std::string> normalized_annotations(std::string_view document, const std:
   if (Status status =
           check_members(parsed, {"format", "version", "model", "views", "annotations"}, "the document of annotations");
       !status) {
-    return fail(status.error());
+    return fail(status);
   }
   if (parsed.value("format", json()) != kFormat) return wrong("the format is not \"surfcast-annotations\"");
   if (parsed.value("version", json()) != kVersion) return wrong("the annotations are of another version of Surfcast");
   Result<json> views = entries_of(parsed, "views", "view", view_of);
-  if (!views) return fail(views.error());
+  if (!views) return fail(views);
   Result<json> annotations = entries_of(parsed, "annotations", "annotation", annotation_of);
-  if (!annotations) return fail(annotations.error());
+  if (!annotations) return fail(annotations);
   return text_of(std::move(*views), std::move(*annotations), model);
 }
 
@@ -172,7 +172,7 @@ Result<Annotations> read_annotations(const AnnotationConfig& config, const std::
   std::error_code code;
   if (!fs::exists(file, code) && !code) return with_edition(text_of(json::array(), json::array(), model));
   const Result<std::string> content = content_of(file, config.bytes, model);
-  if (!content) return fail(content.error());
+  if (!content) return fail(content);
   if (content->size() > config.bytes) return fail(ErrorKind::kLimit, "the annotations of " + model + " are too long");
   Result<std::string> document = normalized_annotations(*content, model);
   if (!document) return fail(ErrorKind::kIo, "the file of " + model + ": " + document.error().message);
@@ -182,14 +182,14 @@ Result<Annotations> read_annotations(const AnnotationConfig& config, const std::
 Result<Annotations> write_annotations(const AnnotationConfig& config, const std::string& model,
                                       std::string_view document, const std::optional<std::string>& replaced) {
   Result<std::string> normalized = normalized_annotations(document, model);
-  if (!normalized) return fail(normalized.error());
+  if (!normalized) return fail(normalized);
   if (normalized->size() > config.bytes) {
     return fail(ErrorKind::kLimit,
                 "the annotations of a model may have " + std::to_string(config.bytes) + " bytes at most");
   }
   if (replaced) {
     const Result<Annotations> present = read_annotations(config, model);
-    if (!present) return fail(present.error());
+    if (!present) return fail(present);
     if (present->edition != *replaced) {
       return fail(ErrorKind::kReplaced, "the annotations have changed since they were read");
     }

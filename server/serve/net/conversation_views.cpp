@@ -55,7 +55,7 @@ Status Conversation::open_view(KeptView wanted) {
   picture.ParseFromString(wanted.picture);
   const access::AuthorizedModel model = rights().authorize(picture.model());
   Result<service::PictureJob> job = to_job(picture, model);
-  if (!job) return fail(job.error());
+  if (!job) return fail(job);
   audit("view", model);
   const double fps = wanted.target_fps > 0 ? wanted.target_fps : context_->config.target_fps;
   const view::ViewOptions options{fps, wanted.depth, wanted.video, context_->config.kept_frame_bytes};

@@ -211,7 +211,7 @@ geometry::Camera from_wire(const wire::Camera& camera) {
 }  // namespace
 
 Result<service::PictureJob> to_job(const wire::DrawPicture& request, const access::AuthorizedModel& model) {
-  if (Status status = protocol::check_picture(request); !status) return fail(status.error());
+  if (Status status = protocol::check_picture(request); !status) return fail(status);
   const wire::Resolution& resolution = request.resolution();
   service::PictureJob job{model};
   static_cast<picture::PlainOptions&>(job.request) = protocol::plain_options(request);
@@ -229,13 +229,13 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request, const acces
 
 Result<service::PickJob> to_job(const wire::PickSurfel& request, const access::AuthorizedModel& model) {
   Result<service::PictureJob> picture = to_job(request.picture(), model);
-  if (!picture) return fail(picture.error());
+  if (!picture) return fail(picture);
   return service::PickJob{std::move(picture->model), std::move(picture->request), picture->up_from_model,
                           clamp_to_int(request.x()), clamp_to_int(request.y())};
 }
 
 Result<service::ProfileJob> to_job(const wire::GetProfile& request, const access::AuthorizedModel& model) {
-  if (Status status = protocol::check_profile(request); !status) return fail(std::move(status.error()));
+  if (Status status = protocol::check_profile(request); !status) return fail(status);
   service::ProfileJob job{model};
   for (const wire::Vector3& point : request.line()) job.query.line.push_back(from_wire(point));
   job.query.width = request.width();
@@ -244,7 +244,7 @@ Result<service::ProfileJob> to_job(const wire::GetProfile& request, const access
 }
 
 Result<service::PointsJob> to_job(const wire::GetPoints& request, const access::AuthorizedModel& model) {
-  if (Status status = protocol::check_points(request); !status) return fail(std::move(status.error()));
+  if (Status status = protocol::check_points(request); !status) return fail(status);
   service::PointsJob job{model};
   service::PointsQuery& query = job.query;
   scan::Selection& points = query.selection.points;

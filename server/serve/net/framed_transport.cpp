@@ -54,7 +54,7 @@ asio::awaitable<Result<Bytes>> FramedTransport::read_hello() {
   co_await asio::async_read(stream_, asio::buffer(bytes) + begun, redirect_error_to(code));
   if (code) co_return fail(ErrorKind::kIo, code.message());
   const Result<size_t> text = protocol::hello_text_bytes(std::span(bytes).first<protocol::kHelloHeaderBytes>());
-  if (!text) co_return fail(text.error());
+  if (!text) co_return fail(text);
   bytes.resize(protocol::kHelloHeaderBytes + *text);
   co_await asio::async_read(stream_, asio::buffer(bytes.data() + protocol::kHelloHeaderBytes, *text),
                             redirect_error_to(code));

@@ -25,7 +25,7 @@ std::string refusal_of_one_more(size_t open, size_t limit, const char* things) {
 Status Gatekeeper::read() {
   if (!wants_tokens()) return {};
   auto principals = access::read_tokens(file_);
-  if (!principals) return fail(principals.error());
+  if (!principals) return fail(principals);
   table_ = std::make_shared<const access::TokenTable>(std::move(*principals));
   return {};
 }

@@ -47,7 +47,7 @@ asio::awaitable<Status> check_model(NetContext& context, const access::Authorize
   }
   const auto description = co_await answer_of<Result<service::ModelDescription>>(
       [&](auto done) { context.service.describe_model(model, std::move(done), client); });
-  if (!description) co_return fail(description.error());
+  if (!description) co_return fail(description);
   co_return Status();
 }
 

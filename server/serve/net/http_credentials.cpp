@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "protocol/url_query.h"
 
 namespace surfcast::net {
@@ -14,11 +14,6 @@ constexpr std::string_view kTokenProtocol = "surfcast.token.";
 /// RFC 6265bis, 4.1.3.2: with this prefix no other host and no plain connection can set it.
 constexpr std::string_view kCookie = "__Host-surfcast";
 constexpr std::string_view kPlainCookie = "surfcast";
-
-std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
-  return text.substr(0, text.find_last_not_of(" \t") + 1);
-}
 
 /// What follows `prefix` in the first of the items that begins with it.
 std::optional<std::string_view> find_item(std::string_view list, char separator, std::string_view prefix) {

@@ -46,7 +46,7 @@ Result<HttpRoute> parse_model_route(std::string_view rest, std::string_view quer
   }
   if (rest.empty() || rest.find('/') != std::string_view::npos) return no_route(kModels);
   Result<std::string> name = protocol::decode_escapes(rest);
-  if (!name) return fail(name.error());
+  if (!name) return fail(name);
   return ModelRoute{resource, std::move(*name), std::string(query)};
 }
 

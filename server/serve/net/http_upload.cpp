@@ -54,7 +54,7 @@ Result<Announced> admit(const NetContext& context, const HeadParser& head, const
   Announced scan;
   if (const auto length = head.content_length()) scan.bytes = *length;
   Result<std::filesystem::path> target = upload_target(config, upload.sender(), upload.file());
-  if (!target) return fail(std::move(target.error()));
+  if (!target) return fail(target);
   scan.target = std::move(*target);
   if (scan.bytes.value_or(0) > config.bytes) return fail(too_large(config.bytes));
   if (context.uploads.contains(key_of(config, scan.target))) {
@@ -103,7 +103,7 @@ asio::awaitable<Status> store(NetContext& context, HttpConnection& connection, H
     });
   };
   Created scan = co_await on_disk<Created>(context, create);
-  if (!scan) co_return fail(scan.error());
+  if (!scan) co_return fail(scan);
   co_await connection.say_continue(head);
   BodyParser body{std::move(head)};
   body.body_limit(boost::none);  // IncomingScan counts

@@ -128,7 +128,7 @@ asio::awaitable<void> MessageSession::read_all() {
 
 asio::awaitable<bool> MessageSession::exchange_hellos() {
   const Result<Bytes> bytes = co_await transport_->read_hello();
-  const Result<protocol::Hello> client = bytes ? protocol::decode_hello(*bytes) : fail(bytes.error());
+  const Result<protocol::Hello> client = bytes ? protocol::decode_hello(*bytes) : fail(bytes);
   if (!client || closing_) co_return false;
   protocol::Hello answer = protocol::answer_hello(*client, "surfcastd");
   if (!peer_.refusal.empty() && answer.status == protocol::HelloStatus::kWelcome) {
@@ -163,7 +163,7 @@ asio::awaitable<bool> MessageSession::read_one() {
   const Result<std::optional<Bytes>> message = co_await transport_->read();
   if (message && !message->has_value()) co_return false;
   last_request_ = Clock::now();
-  const Status handled = message ? conversation_->receive(**message) : fail(message.error());
+  const Status handled = message ? conversation_->receive(**message) : fail(message);
   if (handled) co_return true;
   log_limited(peer_.context->broken_lines, spdlog::level::info,
               "connection " + std::to_string(peer_.id) + ": " + handled.error().message);

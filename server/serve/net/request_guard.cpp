@@ -4,7 +4,7 @@
 #include <boost/asio/ip/address.hpp>
 #include <utility>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "net/upgrade.h"
 
 namespace surfcast::net {

@@ -121,7 +121,7 @@ Status Server::State::listen() {
 Status Server::State::use_certificate() {
   if (context->config.tls.certificate.empty()) return {};
   Result<tls::ServerIdentity> identity = tls::read_identity(context->config.tls);
-  if (!identity) return fail(identity.error());
+  if (!identity) return fail(identity);
   context->tls = std::move(identity->context);
   context->metrics.tls_expires = std::chrono::duration<double>(identity->expires.time_since_epoch()).count();
   return {};
@@ -163,7 +163,7 @@ Status Server::State::watch_files() {
   std::erase(files, std::filesystem::path());
   if (files.empty()) return {};
   auto watch = FileWatch::start(io.get_executor(), files, [this] { reload(); });
-  if (!watch) return fail(watch.error());
+  if (!watch) return fail(watch);
   watched = std::move(*watch);
   return {};
 }
@@ -171,7 +171,7 @@ Status Server::State::watch_files() {
 Status Server::State::open_audit() {
   if (context->config.audit.empty()) return {};
   auto opened = AuditLog::open(context->config.audit, context->config.log_lines);
-  if (!opened) return fail(opened.error());
+  if (!opened) return fail(opened);
   context->audit = std::move(*opened);
   return {};
 }
@@ -380,11 +380,11 @@ Server::~Server() = default;
 Result<std::unique_ptr<Server>> Server::create(service::RenderService& service, const ServerConfig& config) {
   auto state = std::make_unique<State>(service, config);
   state->context->config.hosts.push_back(config.host);
-  if (Status status = state->use_certificate(); !status) return fail(status.error());
-  if (Status status = state->context->gate->read(); !status) return fail(status.error());
-  if (Status status = state->watch_files(); !status) return fail(status.error());
-  if (Status status = state->open_audit(); !status) return fail(status.error());
-  if (Status status = state->listen(); !status) return fail(status.error());
+  if (Status status = state->use_certificate(); !status) return fail(status);
+  if (Status status = state->context->gate->read(); !status) return fail(status);
+  if (Status status = state->watch_files(); !status) return fail(status);
+  if (Status status = state->open_audit(); !status) return fail(status);
+  if (Status status = state->listen(); !status) return fail(status);
   return std::unique_ptr<Server>(new Server(std::move(state)));
 }
 

@@ -75,7 +75,7 @@ Result<std::vector<std::pair<std::string, fs::path>>> list_files(const fs::path&
 
 Result<StaticFiles> StaticFiles::read(const fs::path& folder, const SiteLimits& limits) {
   const auto listed = list_files(folder, limits.files);
-  if (!listed) return fail(listed.error());
+  if (!listed) return fail(listed);
   StaticFiles site;
   uintmax_t total = 0;
   for (const auto& [path, place] : *listed) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "protocol/hello.h"
 
 namespace surfcast::net {

@@ -8,7 +8,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "access/secret.h"
-#include "base/letter_case.h"
+#include "base/ascii_text.h"
 #include "protocol/errors.h"
 #include "service/model_name.h"
 
@@ -123,7 +123,7 @@ fs::path upload_folder(const UploadConfig& config, std::string_view sender) {
 }
 
 Result<fs::path> upload_target(const UploadConfig& config, std::string_view sender, std::string_view name) {
-  if (Status checked = check_name(config, name); !checked) return fail(std::move(checked.error()));
+  if (Status checked = check_name(config, name); !checked) return fail(checked);
   return upload_folder(config, sender) / name;
 }
 

@@ -85,7 +85,7 @@ asio::awaitable<Result<Bytes>> WebSocketTransport::read_hello() {
   head_ = {};
   granted_ = true;
   Result<std::optional<Bytes>> hello = co_await read();
-  if (!hello) co_return fail(hello.error());
+  if (!hello) co_return fail(hello);
   if (!hello->has_value()) co_return fail(ErrorKind::kIo, "the client is gone");
   co_return std::move(**hello);
 }

@@ -56,7 +56,7 @@ class CatalogueRenderer : public FrameRenderer {
   Result<picture::Frame> draw_once(const std::string& name, const picture::PictureRequest& request,
                                    const Preemption& preemption) {
     Result<ModelCatalogue::Edition> edition = models_.open_edition(name, request.edition);
-    if (!edition) return fail(edition.error());
+    if (!edition) return fail(edition);
     keep(name, edition->model);
     const picture::PictureRequest looked = with_first_look(request, edition->model->info());
     Result<picture::Frame> frame = renderer_->draw(edition->model, looked, preemption);
@@ -127,7 +127,7 @@ FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRend
   return
       [&models, make_renderer = std::move(make_renderer), warm_up, place]() -> Result<std::unique_ptr<FrameRenderer>> {
         Result<std::unique_ptr<ModelRenderer>> renderer = make_renderer();
-        if (!renderer) return fail(renderer.error());
+        if (!renderer) return fail(renderer);
         return std::make_unique<CatalogueRenderer>(models, std::move(*renderer), warm_up, place);
       };
 }

@@ -25,7 +25,7 @@ Result<std::unique_ptr<PointStream>> LocalPointStream::open(std::shared_ptr<cons
                                                             const PointsQuery& query,
                                                             std::shared_ptr<const std::atomic<bool>> cancelled) {
   Result<exporter::ModelPoints> points = exporter::ModelPoints::open(std::move(model), query.model, query.selection);
-  if (!points) return fail(std::move(points.error()));
+  if (!points) return fail(points);
   return std::unique_ptr<PointStream>(new LocalPointStream(std::move(*points), query, std::move(cancelled)));
 }
 
@@ -40,10 +40,10 @@ Result<bool> LocalPointStream::count() {
   const Stopwatch watch;
   while (counted_ < points_.pieces() && watch.milliseconds() < kTurnMilliseconds) {
     const Result<exporter::PointFacts> piece = points_.count(counted_, wanted_);
-    if (!piece) return fail(piece.error());
+    if (!piece) return fail(piece);
     facts_.add(*piece);
     ++counted_;
-    if (Status status = check(); !status) return fail(std::move(status.error()));
+    if (Status status = check(); !status) return fail(status);
   }
   if (counted_ < points_.pieces()) return false;
   return prepare().map([] { return true; });
@@ -52,7 +52,7 @@ Result<bool> LocalPointStream::count() {
 Status LocalPointStream::prepare() {
   if (only_count_) return {};
   auto encoder = exporter::make_point_encoder(format_, points_.schema(), facts_);
-  if (!encoder) return fail(std::move(encoder.error()));
+  if (!encoder) return fail(encoder);
   encoder_ = std::move(*encoder);
   return {};
 }
@@ -60,10 +60,10 @@ Status LocalPointStream::prepare() {
 Status LocalPointStream::add_block(PointPiece& piece) {
   if (Status status = check(); !status) return status;
   const Result<scan::ScanPoints> points = points_.read(next_++);
-  if (!points) return fail(points.error());
+  if (!points) return fail(points);
   if (points->size() == 0) return {};
   const Result<std::vector<std::byte>> rows = encoder_->rows(*points);
-  if (!rows) return fail(rows.error());
+  if (!rows) return fail(rows);
   piece.bytes.insert(piece.bytes.end(), rows->begin(), rows->end());
   return {};
 }
@@ -76,7 +76,7 @@ Result<PointPiece> LocalPointStream::next(size_t bytes) {
   while (status && next_ < points_.pieces() && piece.bytes.size() < bytes && watch.milliseconds() < kTurnMilliseconds) {
     status = add_block(piece);
   }
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status);
   if (next_ < points_.pieces()) return piece;
   const std::vector<std::byte> tail = encoder_->tail();
   piece.bytes.insert(piece.bytes.end(), tail.begin(), tail.end());

@@ -38,7 +38,7 @@ Result<kinds::PickQuery> query_of(const model::ModelFile& model, const SurfaceQu
   const auto& [request, up_from_model] = picture;
   const Result<geometry::CameraFrame> frame =
       geometry::make_camera_frame(camera_of(model, request, up_from_model), request.width, request.height);
-  if (!frame) return fail(frame.error());
+  if (!frame) return fail(frame);
   kinds::PickQuery query{*frame, glm::dvec2(0), request.clip, request.hidden_classes};
   query.opacity = request.opacity;
   query.hidden_members = model::hidden_members(model, request.hidden_models);
@@ -64,7 +64,7 @@ class LocalQueries : public ModelQueries {
   Result<std::optional<kinds::PickedSurfel>> pick(const ModelPointer& model, const PixelQuery& pixel,
                                                   const std::atomic<bool>& cancelled) override {
     Result<kinds::PickQuery> query = query_of(*model, pixel.picture);
-    if (!query) return fail(query.error());
+    if (!query) return fail(query);
     query->pixel = {pixel.x + 0.5, pixel.y + 0.5};
     return pick::pick_surfel(*model, *query, blocks_, cancelled, pixel.most_blocks);
   }
@@ -72,7 +72,7 @@ class LocalQueries : public ModelQueries {
   Result<std::vector<pick::FrontPixel>> front_surface(const ModelPointer& model, const SurfaceQuery& picture,
                                                       const std::atomic<bool>& cancelled) override {
     const Result<kinds::PickQuery> query = query_of(*model, picture);
-    if (!query) return fail(query.error());
+    if (!query) return fail(query);
     return pick::find_front_surface(*model, *query, searched_blocks_, cancelled);
   }
 

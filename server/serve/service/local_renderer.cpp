@@ -42,7 +42,7 @@ class LocalRenderer : public ModelRenderer {
 ModelRendererFactory local_renderers(const render::RendererConfig& config, std::function<void()> on_reset) {
   return [config, on_reset = std::move(on_reset)]() -> Result<std::unique_ptr<ModelRenderer>> {
     Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(config);
-    if (!renderer) return fail(renderer.error());
+    if (!renderer) return fail(renderer);
     return std::make_unique<LocalRenderer>(std::move(*renderer), on_reset);
   };
 }

@@ -367,9 +367,9 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::join(
   }
   std::vector<model::Member> members;
   for (size_t i = 0; i < names.size(); ++i) members.push_back({names[i], models[i]});
-  if (Status placed = place_members(members); !placed) return fail(std::move(placed.error()));
+  if (Status placed = place_members(members); !placed) return fail(placed);
   Result<model::ModelFile> made = model::ModelFile::join(std::move(members));
-  if (!made) return fail(std::move(made.error()));
+  if (!made) return fail(made);
   const std::lock_guard lock(mutex_);
   Joined& joined = joined_[names];
   if (joined.members != models) {
@@ -434,7 +434,7 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const 
   if (is_current(opened)) return opened.model;  // another thread was faster
   if (!model) {
     opened_.erase(name);
-    return fail(model.error());
+    return fail(model);
   }
   opened = {path, written, std::make_shared<const model::ModelFile>(std::move(*model))};
   return opened.model;
@@ -451,9 +451,9 @@ std::vector<std::shared_ptr<const model::ModelFile>> ModelCatalogue::opened_in_s
 
 Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const {
   const Result<std::shared_ptr<const model::ModelFile>> model = open(name);
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   Result<model::Georeference> georeference = (*model)->georeference();
-  if (!georeference) return fail(std::move(georeference.error()));
+  if (!georeference) return fail(georeference);
   ModelDescription description;
   description.georeference = std::move(*georeference);
   description.info = (*model)->info();

@@ -18,7 +18,7 @@ template <typename Work>
 auto on_model(const ModelSource& models, const std::string& name, const Work& work) {
   const auto once = [&]() -> decltype(work(std::declval<const ModelPointer&>())) {
     const Result<ModelPointer> model = models.open(name);
-    if (!model) return fail(model.error());
+    if (!model) return fail(model);
     return work(*model);
   };
   auto result = once();
@@ -72,7 +72,7 @@ Result<std::optional<PickedPoint>> PickService::run(const PickJob& job) {
         models_, job.model.served_name(), [&](const ModelPointer& model) -> Result<std::optional<PickedPoint>> {
           const PixelQuery query{{request, job.up_from_model}, job.x, job.y, most_blocks_};
           auto picked = queries_->pick(model, query, stopping_);
-          if (!picked) return fail(std::move(picked.error()));
+          if (!picked) return fail(picked);
           if (!*picked) return std::nullopt;
           const std::optional<glm::dvec3> source_position = source_positions_.find(*model, (*picked)->position);
           std::string member = member_name(*model, **picked);
@@ -92,8 +92,7 @@ void PickService::find_surface(SurfaceJob job, std::shared_ptr<const std::atomic
 Result<std::vector<pick::FrontPixel>> PickService::search(const SurfaceJob& job, const std::atomic<bool>& cancelled) {
   return on_model(models_, job.model.served_name(),
                   [&](const ModelPointer& model) -> Result<std::vector<pick::FrontPixel>> {
-                    if (Status status = check_channels(job.channels, model->info()); !status)
-                      return fail(std::move(status.error()));
+                    if (Status status = check_channels(job.channels, model->info()); !status) return fail(status);
                     return queries_->front_surface(model, {job.request, job.up_from_model}, cancelled);
                   });
 }
@@ -130,12 +129,12 @@ Result<std::shared_ptr<PointStream>> PickService::open_stream(PointsJob job,
                                                               std::shared_ptr<const std::atomic<bool>> cancelled,
                                                               std::shared_ptr<const void> place) {
   const Result<ModelPointer> model = models_.open(job.model.served_name());
-  if (!model) return fail(model.error());
+  if (!model) return fail(model);
   PointsQuery& query = job.query;
   query.model = job.model.name();
   query.most = query.most == 0 ? most_region_points_ : std::min(query.most, most_region_points_);
   Result<std::unique_ptr<PointStream>> stream = queries_->points(*model, query, std::move(cancelled));
-  if (!stream) return fail(std::move(stream.error()));
+  if (!stream) return fail(stream);
   (*stream)->keep(std::move(place));
   (*stream)->set_service(*this);
   return std::shared_ptr<PointStream>(std::move(*stream));
@@ -145,7 +144,7 @@ Result<std::shared_ptr<PointStream>> PickService::open_stream(PointsJob job,
 void PickService::count(const std::shared_ptr<PointStream>& stream, const PointsDone& done, ClientId client) {
   if (stopping_) return deliver(done, Result<std::shared_ptr<PointStream>>(fail(ErrorKind::kCancelled, "cancelled")));
   const Result<bool> whole = guarded([&] { return stream->count(); });
-  if (!whole) return deliver(done, Result<std::shared_ptr<PointStream>>(fail(whole.error())));
+  if (!whole) return deliver(done, Result<std::shared_ptr<PointStream>>(fail(whole)));
   if (*whole) return deliver(done, Result<std::shared_ptr<PointStream>>(stream));
   searches_.post([this, stream, done, client] { count(stream, done, client); }, client);
 }
@@ -165,7 +164,7 @@ Result<ProfileResult> PickService::find_profile(const ProfileJob& job) const {
   query.most = query.most == 0 ? most_points_ : std::min(query.most, most_points_);
   return on_model(models_, job.model.served_name(), [&](const ModelPointer& model) -> Result<ProfileResult> {
     Result<pick::Band> band = queries_->band(model, query, stopping_);
-    if (!band) return fail(band.error());
+    if (!band) return fail(band);
     const model::ModelInfo& info = model->info();
     return ProfileResult{std::move(*band), info.z_up, info.color_bits, info.scalar_names};
   });

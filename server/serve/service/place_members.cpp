@@ -90,9 +90,9 @@ Status place_blocks(const crs::Transformation& way, model::Member& member) {
 Result<crs::Transformation> way_between(const model::CoordinateSystem& from, const model::CoordinateSystem& to,
                                         const geometry::Box& bounds) {
   const Result<crs::CoordinateSystem> source = crs::read_system(from.wkt);
-  if (!source) return fail(source.error());
+  if (!source) return fail(source);
   const Result<crs::CoordinateSystem> target = crs::read_system(to.wkt);
-  if (!target) return fail(target.error());
+  if (!target) return fail(target);
   return crs::Transformation::between(*source, *target, bounds);
 }
 
@@ -114,7 +114,7 @@ bool are_same(const model::CoordinateSystem& a, const model::CoordinateSystem& b
 
 Status MemberPlacer::place(model::Member& member) {
   const Result<model::Georeference> georeference = member.model->georeference();
-  if (!georeference) return fail(georeference.error());
+  if (!georeference) return fail(georeference);
   if (!georeference->known()) return {};
   if (!common_) common_ = georeference->system;
   if (are_same(georeference->system, *common_)) return {};

@@ -52,7 +52,7 @@ Status fill_bytes(const RenderJob& job, const picture::Frame& frame, EncodedPict
     }
   }
   Result<std::vector<std::byte>> bytes = encode_file(job, frame);
-  if (!bytes) return fail(bytes.error());
+  if (!bytes) return fail(bytes);
   picture.bytes = std::move(*bytes);
   return {};
 }
@@ -84,7 +84,7 @@ tl::unexpected<Error> cancelled_error() {
 }
 
 Result<EncodedPicture> encode_job(RenderJob& job, const Result<SharedFrame>& shared) {
-  if (!shared) return fail(shared.error());
+  if (!shared) return fail(shared);
   job.encoding = true;
   if (job.cancelled) return cancelled_error();
   const Stopwatch watch;
@@ -92,7 +92,7 @@ Result<EncodedPicture> encode_job(RenderJob& job, const Result<SharedFrame>& sha
   EncodedPicture picture = describe(job, frame);
   if (job.picture.keep_frame) picture.frame = *shared;
   if (!frame.image.pixels.empty()) {
-    if (Status filled = fill_bytes(job, frame, picture); !filled) return fail(filled.error());
+    if (Status filled = fill_bytes(job, frame, picture); !filled) return fail(filled);
     if (job.picture.depth_bytes > 0) picture.depth = encode::encode_depth(frame.depth, job.picture.depth_bytes);
   }
   if (job.cancelled) return withdrawn(picture, job);

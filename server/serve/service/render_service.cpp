@@ -86,14 +86,14 @@ Result<std::unique_ptr<RenderService>> RenderService::start(
   more.insert(more.begin(), std::move(make_renderer));
   for (size_t i = 0; i < more.size(); ++i) {
     if (Status status = service->local_[i]->start_threads(std::move(more[i]), picks); !status) {
-      return fail(std::move(status.error()));
+      return fail(status);
     }
   }
   if (!remote) return service;
   auto far_picks = std::make_shared<PickService>(models, limits.picks, std::move(remote->queries));
   if (Status status = service->remote_->start_threads(std::move(remote->make_renderer), std::move(far_picks));
       !status) {
-    return fail(std::move(status.error()));
+    return fail(status);
   }
   return service;
 }
@@ -162,7 +162,7 @@ void RenderService::describe_model(const access::AuthorizedModel& model, Descrip
   const std::string name = model.served_name();
   State& state = state_of(name);
   state.when_available(name, [state = &state, name, done = std::move(done), client](const Status& there) {
-    if (!there) return done(fail(there.error()));
+    if (!there) return done(fail(there));
     state->lookups->post([state, name, done] { deliver(done, guarded([&] { return state->models.describe(name); })); },
                          client);
   });
@@ -172,7 +172,7 @@ void RenderService::pick(PickJob job, PickService::Done done, ClientId client) {
   const std::string model = job.model.served_name();
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), done = std::move(done), client](const Status& there) {
-    if (!there) return done(fail(there.error()));
+    if (!there) return done(fail(there));
     state->picks->pick(job, done, client);
   };
   state.when_available(model, run);
@@ -182,7 +182,7 @@ void RenderService::profile(ProfileJob job, PickService::ProfileDone done, Clien
   const std::string model = job.model.served_name();
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), done = std::move(done), client](const Status& there) {
-    if (!there) return done(fail(there.error()));
+    if (!there) return done(fail(there));
     state->picks->profile(job, done, client);
   };
   state.when_available(model, run);
@@ -194,7 +194,7 @@ void RenderService::points(PointsJob job, std::shared_ptr<const std::atomic<bool
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), cancelled = std::move(cancelled), done = std::move(done),
                     client](const Status& there) {
-    if (!there) return done(fail(there.error()));
+    if (!there) return done(fail(there));
     state->picks->points(job, cancelled, done, client);
   };
   state.when_available(model, run);

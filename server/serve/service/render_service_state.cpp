@@ -138,7 +138,7 @@ bool RenderService::State::leave_searches(JobId id) {
 
 /// Goes on with a job that has waited for its model.
 void RenderService::State::end_waiting(const JobPointer& job, const Status& there) {
-  if (!there) return finish(job, fail(there.error()));
+  if (!there) return finish(job, fail(there));
   bool room = false;
   {
     const std::lock_guard lock(mutex);
@@ -162,7 +162,7 @@ JobId RenderService::State::add(const Client& client, PictureJob picture, Pictur
   if (room) jobs.emplace(job->id, job);
   lock.unlock();
   if (!room) {
-    job->done(checked ? busy_error() : fail(checked.error()));
+    job->done(checked ? busy_error() : fail(checked));
   } else if (!waits) {
     proceed(job);
   }
@@ -193,7 +193,7 @@ void RenderService::State::end_search(const JobPointer& job, Result<std::vector<
   }
   lock.unlock();
   if (wanted) return finish(job, busy_error());
-  finish(job, front ? cancelled_error() : fail(front.error()));
+  finish(job, front ? cancelled_error() : fail(front));
 }
 
 /// Keeps `proceed` until the model is there. False if there is no room.

@@ -30,7 +30,7 @@ constexpr double kMinDrawingMs = 1;
 void RenderService::State::run(const FrameRendererFactory& make_renderer, std::promise<Status> started) {
   Result<std::unique_ptr<FrameRenderer>> renderer = guarded([&] { return make_renderer(); });
   if (!renderer) {
-    started.set_value(fail(renderer.error()));
+    started.set_value(fail(renderer));
     return;
   }
   device = (*renderer)->device();
@@ -202,12 +202,12 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
   request.format = picture::pixel_format_of(job.picture.format);
   if (request.camera && job.picture.up_from_model) {
     const Result<ModelDescription> description = models.describe(job.picture.model.served_name());
-    if (!description) return fail(description.error());
+    if (!description) return fail(description);
     request.camera->view_up = description->info.up();
   }
   if (request.time_ms > 0) {
     const Result<double> encoding = encoding_ms(renderer, job, request, preemption);
-    if (!encoding) return fail(encoding.error());
+    if (!encoding) return fail(encoding);
     request.time_ms = std::max(request.time_ms - *encoding, kMinDrawingMs);
   }
   return renderer.draw(job.picture.model.served_name(), request, preemption);
@@ -228,10 +228,10 @@ Result<double> RenderService::State::encoding_ms(FrameRenderer& renderer, const 
   request.width = std::max(request.width / kSmaller, 1);
   request.height = std::max(request.height / kSmaller, 1);
   const Result<picture::Frame> small = renderer.draw(job.picture.model.served_name(), request, preemption);
-  if (!small) return fail(small.error());
+  if (!small) return fail(small);
   const Stopwatch watch;
   const auto file = encode::encode_picture(small->image, format, job.picture.quality);
-  if (!file) return fail(file.error());
+  if (!file) return fail(file);
   encode_times.record(format, static_cast<size_t>(request.width) * static_cast<size_t>(request.height),
                       watch.milliseconds());
   return encode_times.expected_ms(format, pixels).value_or(0);
@@ -304,7 +304,7 @@ void RenderService::State::draw_one(FrameRenderer& renderer, const JobPointer& j
     cancel_superseded(job->picture.supersedes);
     shared = std::make_shared<const picture::Frame>(std::move(*frame));
   } else {
-    shared = fail(frame.error());
+    shared = fail(frame);
   }
   WorkerPool& encoder = job->picture.priority == Priority::kMotion ? *motion_pool : *pool;
   encoder.post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); },

@@ -119,13 +119,13 @@ Result<std::optional<Received>> Channel::receive(std::chrono::milliseconds most)
   uint32_t size = 0;
   Descriptor descriptor;
   if (Status read = read_all(std::as_writable_bytes(std::span(&size, 1)), &descriptor); !read) {
-    return fail(std::move(read.error()));
+    return fail(read);
   }
   if (size > kMaxBytes) return fail(ErrorKind::kInvalidInput, "a message of " + std::to_string(size) + " bytes");
   std::vector<std::byte> payload(size);
-  if (Status read = read_all(payload, nullptr); !read) return fail(std::move(read.error()));
+  if (Status read = read_all(payload, nullptr); !read) return fail(read);
   Result<Message> message = decode(payload);
-  if (!message) return fail(std::move(message.error()));
+  if (!message) return fail(message);
   return Received{std::move(*message), std::move(descriptor)};
 }
 

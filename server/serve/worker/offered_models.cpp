@@ -12,7 +12,7 @@ OfferedModel joined_model(const OfferJoin& offer, const OfferedModels& models) {
   for (const OfferJoin::Part& part : offer.parts) {
     const auto found = models.find(part.model);
     if (found == models.end()) return fail(ErrorKind::kInternal, "a model of several that was not offered");
-    if (!found->second) return fail(found->second.error());
+    if (!found->second) return fail(found->second);
     members.push_back({part.name, *found->second, part.places});
   }
   return service::guarded([&] { return model::ModelFile::join(std::move(members)); }).map([](model::ModelFile joined) {

@@ -130,9 +130,9 @@ class QueryWorker {
   void handle(Pick& pick, Descriptor& /*descriptor*/) {
     answer_with([&]() -> Result<Message> {
       const Result<ModelPointer> model = model_of(pick.model);
-      if (!model) return fail(model.error());
+      if (!model) return fail(model);
       auto picked = queries_->pick(*model, pick.query, board_.cancelled(0));
-      if (!picked) return fail(std::move(picked.error()));
+      if (!picked) return fail(picked);
       return Picked{std::move(*picked)};
     });
   }
@@ -140,9 +140,9 @@ class QueryWorker {
   void handle(FindBand& find, Descriptor& /*descriptor*/) {
     answer_with([&]() -> Result<Message> {
       const Result<ModelPointer> model = model_of(find.model);
-      if (!model) return fail(model.error());
+      if (!model) return fail(model);
       const Result<pick::Band> band = queries_->band(*model, find.query, board_.cancelled(0));
-      if (!band) return fail(band.error());
+      if (!band) return fail(band);
       const size_t attributes = (*model)->info().scalar_names.size();
       BandPart part = part_of(*band, 0, attributes);
       for (size_t sent = 0; !part.last; part = part_of(*band, sent, attributes)) {
@@ -162,9 +162,9 @@ class QueryWorker {
     };
     const Status searched = service::guarded([&]() -> Status {
       const Result<ModelPointer> model = model_of(search.model);
-      if (!model) return fail(model.error());
+      if (!model) return fail(model);
       const Result<kinds::PickQuery> query = service::query_of(**model, search.query);
-      if (!query) return fail(query.error());
+      if (!query) return fail(query);
       return pick::search_front_surface(**model, *query, *searched_blocks_, board_.cancelled(0), send);
     });
     if (!searched) answer(Refused{searched.error()});
@@ -173,10 +173,10 @@ class QueryWorker {
   void handle(OpenPoints& open_points, Descriptor& /*descriptor*/) {
     answer_with([&]() -> Result<Message> {
       const Result<ModelPointer> model = model_of(open_points.model);
-      if (!model) return fail(model.error());
+      if (!model) return fail(model);
       const std::shared_ptr<const std::atomic<bool>> cancelled(std::shared_ptr<void>(), &board_.cancelled(0));
       auto points = queries_->points(*model, open_points.query, cancelled);
-      if (!points) return fail(std::move(points.error()));
+      if (!points) return fail(points);
       const PointsCounted counted{(*points)->facts(), false};
       streams_[open_points.stream] = {std::move(*points), {}};
       return counted;
@@ -187,7 +187,7 @@ class QueryWorker {
       const auto found = streams_.find(count.stream);
       if (found == streams_.end()) end_worker(EXIT_FAILURE);
       const Result<bool> whole = found->second.points->count();
-      if (!whole) return fail(whole.error());
+      if (!whole) return fail(whole);
       return PointsCounted{found->second.points->facts(), *whole};
     });
   }
@@ -204,7 +204,7 @@ class QueryWorker {
     service::PointPiece& rest = stream.rest;
     if (rest.bytes.empty() && !rest.last) {
       Result<service::PointPiece> made = stream.points->next(bytes);
-      if (!made) return fail(std::move(made.error()));
+      if (!made) return fail(made);
       rest = std::move(*made);
     }
     const auto end = rest.bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes, rest.bytes.size()));
@@ -216,11 +216,11 @@ class QueryWorker {
 
   Result<ModelPointer> open(const OfferModel& offer, Descriptor descriptor) {
     Result<PositionedFile> file = PositionedFile::adopt(descriptor.release(), offer.path);
-    if (!file) return fail(file.error());
+    if (!file) return fail(file);
     auto watched = std::make_unique<WatchedFile>(FileSource(std::move(*file), offer.path), watch_);
     WatchedFile* const watching = watched.get();
     Result<model::ModelFile> model = model::ModelFile::open(std::move(watched));
-    if (!model) return fail(model.error());
+    if (!model) return fail(model);
     watching->begin(offer.model, model->blocks(), offer.quarantined);
     return std::make_shared<const model::ModelFile>(std::move(*model));
   }

@@ -56,11 +56,11 @@ class RenderWorker {
     if (configure.sandbox) {
       OpenFiles files{driver_paths(), configure.writable};
       files.readable.insert(files.readable.end(), configure.readable.begin(), configure.readable.end());
-      if (Status confined = confine_files(files); !confined) return fail(confined.error());
+      if (Status confined = confine_files(files); !confined) return fail(confined);
     }
     Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(configure.renderer);
     if (!renderer || !configure.sandbox) return renderer;
-    if (Status confined = confine_calls(); !confined) return fail(confined.error());
+    if (Status confined = confine_calls(); !confined) return fail(confined);
     return renderer;
   }
 
@@ -82,7 +82,7 @@ class RenderWorker {
   void accept(OfferModel offer, Descriptor file) {
     Result<model::ModelFile> model = service::guarded([&]() -> Result<model::ModelFile> {
       Result<PositionedFile> opened = PositionedFile::adopt(file.release(), offer.path);
-      if (!opened) return fail(opened.error());
+      if (!opened) return fail(opened);
       return model::ModelFile::open(std::make_unique<FileSource>(std::move(*opened), offer.path));
     });
     keep(offer, std::move(model).map([](model::ModelFile opened) {

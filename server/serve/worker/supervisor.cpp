@@ -19,7 +19,7 @@ Supervisor::Supervisor(WorkerStart start, WorkerCounts& counts, Blame& blame)
 Status Supervisor::start() {
   if (process_) return {};
   Result<WorkerProcess> process = WorkerProcess::start(start_.command, start_.environment, start_.pixel_bytes);
-  if (!process) return fail(std::move(process.error()));
+  if (!process) return fail(process);
   process_.emplace(std::move(*process));
   ++generation_;
   offered_.clear();

@@ -89,11 +89,11 @@ bool is_its_own_fault(const ProcessEnd& end) {
 Result<WorkerProcess> WorkerProcess::start(const std::vector<std::string>& command,
                                            const std::vector<std::string>& environment, size_t pixel_bytes) {
   Result<SharedBoard> board = SharedBoard::create(pixel_bytes);
-  if (!board) return fail(std::move(board.error()));
+  if (!board) return fail(board);
   Result<std::pair<Channel, Channel>> ends = Channel::make_pair();
-  if (!ends) return fail(std::move(ends.error()));
+  if (!ends) return fail(ends);
   const Result<pid_t> process = spawn(command, environment, ends->second.socket(), board->memory());
-  if (!process) return fail(process.error());
+  if (!process) return fail(process);
   return WorkerProcess(*process, std::move(ends->first), std::move(*board));
 }
 

@@ -80,9 +80,9 @@ class QueryProcess {
   template <typename Answer, typename Take>
   Result<Answer> ask(const ModelPointer& model, const Message& question, const std::atomic<bool>& cancelled,
                      const Take& take) {
-    if (Status passable = check_passable(*model); !passable) return fail(std::move(passable.error()));
+    if (Status passable = check_passable(*model); !passable) return fail(passable);
     for (Attempts attempts; !attempts.exhausted();) {
-      if (Status started = start(); !started) return fail(std::move(started.error()));
+      if (Status started = start(); !started) return fail(started);
       Supervisor::End end;
       Result<Answer> answer = ask_once<Answer>(model, question, cancelled, take, &end);
       if (answer || worker_.running()) return answer;
@@ -102,7 +102,7 @@ class QueryProcess {
       const Supervisor::End verdict = worker_.bury();
       if (end != nullptr) *end = verdict;
     }
-    if (!answered) return fail(std::move(answered.error()));
+    if (!answered) return fail(answered);
     return answer;
   }
 
@@ -302,7 +302,7 @@ class WorkerPointStream : public service::PointStream {
 
   Result<service::PointPiece> next(size_t bytes) override {
     Result<PointsPiece> made = ask<PointsPiece>(NextPiece{number_, bytes});
-    if (!made) return fail(std::move(made.error()));
+    if (!made) return fail(made);
     return std::move(made->piece);
   }
 
@@ -343,7 +343,7 @@ class WorkerQueries : public service::ModelQueries {
     Result<Picked> picked = picks_.with([&](QueryProcess& process) {
       return process.ask<Picked>(model, Pick{model->id(), query}, cancelled, take_one<Picked>);
     });
-    if (!picked) return fail(std::move(picked.error()));
+    if (!picked) return fail(picked);
     return std::move(picked->item);
   }
 
@@ -360,7 +360,7 @@ class WorkerQueries : public service::ModelQueries {
     Result<Surface> surface = searches_.with([&](QueryProcess& process) {
       return process.ask<Surface>(model, SearchSurface{model->id(), query}, cancelled, take);
     });
-    if (!surface) return fail(std::move(surface.error()));
+    if (!surface) return fail(surface);
     return std::move(surface->pixels);
   }
 
@@ -384,7 +384,7 @@ class WorkerQueries : public service::ModelQueries {
       const uint64_t number = ++last_stream_;
       const Result<PointsCounted> opened = process.ask<PointsCounted>(model, OpenPoints{number, model->id(), query},
                                                                       *cancelled, take_one<PointsCounted>);
-      if (!opened) return fail(opened.error());
+      if (!opened) return fail(opened);
       return std::make_unique<WorkerPointStream>(searches_, process, number, query.most, std::move(cancelled));
     });
   }
@@ -411,7 +411,7 @@ class WorkerQueries : public service::ModelQueries {
 
 Result<std::unique_ptr<service::ModelQueries>> worker_queries(const QueryWorkerConfig& config, WorkerCounts& counts) {
   auto queries = std::make_unique<WorkerQueries>(config, counts);
-  if (Status started = queries->start(); !started) return fail(std::move(started.error()));
+  if (Status started = queries->start(); !started) return fail(started);
   return queries;
 }
 

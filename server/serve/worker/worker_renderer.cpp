@@ -43,9 +43,9 @@ class WorkerRenderer : public service::ModelRenderer {
                               const picture::PictureRequest& request, const Preemption& preemption) override {
     if (pixels_of(request) > most_pixels_)
       return fail(ErrorKind::kLimit, "the picture has more pixels than may be drawn");
-    if (Status passable = check_passable(*model); !passable) return fail(std::move(passable.error()));
+    if (Status passable = check_passable(*model); !passable) return fail(passable);
     for (Attempts attempts; !attempts.exhausted();) {
-      if (Status started = start(); !started) return fail(std::move(started.error()));
+      if (Status started = start(); !started) return fail(started);
       const uint64_t generation = worker_.generation();
       ++depth_;
       Result<picture::Frame> frame = exchange(model, request, preemption);
@@ -129,7 +129,7 @@ class WorkerRenderer : public service::ModelRenderer {
 service::ModelRendererFactory worker_renderers(const WorkerConfig& config, WorkerCounts& counts) {
   return [config, &counts]() -> Result<std::unique_ptr<service::ModelRenderer>> {
     auto renderer = std::make_unique<WorkerRenderer>(config, counts);
-    if (Status started = renderer->start(); !started) return fail(std::move(started.error()));
+    if (Status started = renderer->start(); !started) return fail(started);
     return renderer;
   };
 }

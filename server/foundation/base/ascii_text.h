@@ -28,4 +28,12 @@ constexpr char to_lower(char c) {
   return to_lower(file.extension().string());
 }
 
+/// Without the white space of ASCII at both ends.
+[[nodiscard]] constexpr std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\n\v\f\r";
+  const size_t first = text.find_first_not_of(kSpace);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
 }  // namespace surfcast
