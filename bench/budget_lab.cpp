@@ -18,10 +18,9 @@
 #include "access/authorization.h"
 #include "bench_support.h"
 #include "picture_error.h"
-#include "service/catalogue_renderer.h"
-#include "service/local_renderer.h"
 #include "service/model_catalogue.h"
 #include "service/render_service.h"
+#include "service/renderer_factories.h"
 
 namespace {
 

@@ -122,7 +122,7 @@ Result<MessageChannel::Bytes> WebSocketChannel::read(TimePoint deadline) {
     incoming_.clear();
     stream_.async_read(incoming_, reading_.begin());
   }
-  if (const Status outcome = socket_->finish(reading_, deadline); !outcome) return fail(explain(outcome).error());
+  if (const Status outcome = socket_->finish(reading_, deadline); !outcome) return fail(explain(outcome));
   reading_.begun = false;
   if (!stream_.got_binary()) return fail(ErrorKind::kInvalidInput, "the server sends text");
   const auto* first = static_cast<const std::byte*>(incoming_.cdata().data());

@@ -28,13 +28,8 @@
 #include "cmd/build_flags.h"
 #include "cmd/build_progress.h"
 #include "cmd/commands.h"
-#include "cmd/field_flags.h"
 #include "cmd/georeference_text.h"
-#include "cmd/iso_flag.h"
-#include "cmd/mesh_flags.h"
-#include "cmd/radius_flag.h"
-#include "cmd/selection_flags.h"
-#include "cmd/simplify_flag.h"
+#include "cmd/input_flags.h"
 #include "isosurface/surface_inputs.h"
 
 namespace surfcast::cmd {

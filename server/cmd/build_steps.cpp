@@ -15,8 +15,7 @@
 #include "builder/memory_budget.h"
 #include "cmd/build_flags.h"
 #include "cmd/commands.h"
-#include "cmd/radius_flag.h"
-#include "cmd/selection_flags.h"
+#include "cmd/input_flags.h"
 
 namespace surfcast::cmd {
 namespace {

@@ -15,7 +15,7 @@
 #include "builder/build_model.h"
 #include "builder/memory_budget.h"
 #include "cmd/commands.h"
-#include "cmd/radius_flag.h"
+#include "cmd/input_flags.h"
 #include "colorize/geo_photo.h"
 #include "colorize/paint_from_above.h"
 #include "colorize/paint_from_cameras.h"

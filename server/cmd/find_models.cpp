@@ -9,7 +9,7 @@
 
 #include "access/joined_name.h"
 #include "base/mapped_file.h"
-#include "builder/build_gaussians.h"
+#include "builder/build_kinds.h"
 #include "builder/input_files.h"
 #include "cmd/open_members.h"
 #include "object_store/object_url.h"

@@ -1,7 +1,6 @@
 #include "cmd/limit_flags.h"
 
-#include "cmd/mesh_flags.h"
-#include "cmd/radius_flag.h"
+#include "cmd/input_flags.h"
 #include "cmd/settings.h"
 #include "protocol/request_flags.h"
 

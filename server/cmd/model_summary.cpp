@@ -193,7 +193,7 @@ ModelSummary summarize(const model::ModelFile& model, uint64_t file_bytes) {
     level.smallest_spacing = level.blocks == 0 ? block.spacing : std::min(level.smallest_spacing, block.spacing);
     level.largest_spacing = std::max(level.largest_spacing, block.spacing);
     ++level.blocks;
-    level.surfels += block.surfels;
+    level.surfels += block.items;
     level.bytes += block.bytes;
   }
   const std::span<const model::Volume> volumes = model.volumes();

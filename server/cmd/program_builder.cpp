@@ -12,8 +12,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/scratch_folder.h"
-#include "cmd/mesh_flags.h"
-#include "cmd/radius_flag.h"
+#include "cmd/input_flags.h"
 
 namespace surfcast::cmd {
 namespace {

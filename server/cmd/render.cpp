@@ -17,9 +17,8 @@
 #include "net/convert.h"
 #include "protocol/request_flags.h"
 #include "protocol/save_picture.h"
-#include "service/catalogue_renderer.h"
-#include "service/local_renderer.h"
 #include "service/render_service.h"
+#include "service/renderer_factories.h"
 
 namespace surfcast::cmd {
 namespace {

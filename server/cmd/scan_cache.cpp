@@ -20,7 +20,7 @@
 #include "builder/build_model.h"
 #include "builder/input_files.h"
 #include "cmd/cache_eviction.h"
-#include "cmd/mesh_flags.h"
+#include "cmd/input_flags.h"
 #include "model/model_file.h"
 
 namespace surfcast::cmd {

@@ -38,10 +38,9 @@
 #include "protocol/endpoint.h"
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
-#include "service/catalogue_renderer.h"
-#include "service/local_renderer.h"
 #include "service/model_name.h"
 #include "service/render_service.h"
+#include "service/renderer_factories.h"
 #include "worker/worker_queries.h"
 #include "worker/worker_renderer.h"
 

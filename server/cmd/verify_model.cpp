@@ -36,7 +36,7 @@ Status verify_model(const model::ModelFile& model, kinds::KindTable kinds) {
     });
   }
   if (first_bad == count) return {};
-  return fail(decode(first_bad).error());
+  return fail(decode(first_bad));
 }
 
 }  // namespace surfcast::cmd

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/descriptor.h"
-#include "worker/run_query_worker.h"
 #include "worker/run_worker.h"
 
 namespace surfcast::cmd {

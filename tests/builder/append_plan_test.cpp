@@ -31,7 +31,7 @@ ldc::BlockEntry block_in(const OctreeKey& key, uint32_t parent, int level) {
   entry.bounds.max -= 0.01;
   entry.spacing = 0.125;  // reaches 0.5
   entry.max_radius = 0.125;
-  entry.surfels = 5000;
+  entry.items = 5000;
   return entry;
 }
 

@@ -1,8 +1,8 @@
-#include "command_line/closest_word.h"
-
 #include <array>
 
 #include <gtest/gtest.h>
+
+#include "command_line/parse_failure.h"
 
 namespace surfcast::command_line {
 namespace {

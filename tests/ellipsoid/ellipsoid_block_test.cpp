@@ -44,7 +44,7 @@ class EllipsoidBlockTest : public ::testing::Test {
   }
 
   static model::StoredBlock stored(const model::EncodedBlock& block) {
-    return {block.bytes, block.grid, block.origin, block.extent, block.surfels};
+    return {block.bytes, block.grid, block.origin, block.extent, block.items};
   }
 
   Result<EllipsoidBlock> decode(const model::EncodedBlock& block) {

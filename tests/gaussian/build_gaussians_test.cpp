@@ -7,7 +7,7 @@
 
 #include "builder/build_model.h"
 #include "builder/gaussian_sample.h"
-#include "builder/gaussian_tree.h"
+#include "builder/kind_trees.h"
 #include "gaussian/gaussian_block.h"
 #include "gaussian/gaussian_files.h"
 #include "gaussian/gaussian_scenes.h"
@@ -94,7 +94,7 @@ TEST(BuildGaussiansTest, BlocksMakeAnOctreeThatHoldsEveryGaussianOnce) {
   EXPECT_GT(model->info().levels, 1);
   for (uint32_t i = 0; i < model->blocks().size(); ++i) {
     const ldc::BlockEntry& block = model->blocks()[i];
-    EXPECT_LE(block.surfels, 16384U);
+    EXPECT_LE(block.items, 16384U);
     if (block.parent == ldc::BlockEntry::kNoParent) continue;
     EXPECT_GT(model->blocks()[block.parent].spacing, block.spacing);
   }

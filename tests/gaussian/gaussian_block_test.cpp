@@ -32,7 +32,7 @@ Gaussians random_gaussians(uint64_t count, int degree, uint32_t seed = 1) {
 }
 
 model::StoredBlock stored(const model::EncodedBlock& block) {
-  return {block.bytes, block.grid, block.origin, block.extent, block.surfels};
+  return {block.bytes, block.grid, block.origin, block.extent, block.items};
 }
 
 /// The Gaussian of a list whose centre is nearest.

@@ -280,7 +280,7 @@ TEST_F(Glyphs, AreNoMoreInMotionThanASurfaceWouldHaveTwice) {
   // A budget between the cuts of the tree is spent on the larger of those that it holds.
   const auto blocks = model->blocks();
   uint64_t children = 0;
-  for (const ldc::BlockEntry& block : blocks) children += block.parent == 0 ? block.surfels : 0;
+  for (const ldc::BlockEntry& block : blocks) children += block.parent == 0 ? block.items : 0;
   const auto glyphs_in_motion = [&](double spacing) {
     request.spacing = spacing;
     request.rest_spacing = 0;
@@ -288,9 +288,9 @@ TEST_F(Glyphs, AreNoMoreInMotionThanASurfaceWouldHaveTwice) {
   };
   const auto spacing_for = [](double glyphs) { return std::sqrt(2.0 * kSide * kSide / glyphs); };
   const auto most = static_cast<double>(children);
-  ASSERT_LT(blocks[0].surfels, children);
+  ASSERT_LT(blocks[0].items, children);
   EXPECT_EQ(glyphs_in_motion(spacing_for(most + 1)), children) << "just enough for the children of the root";
-  EXPECT_EQ(glyphs_in_motion(spacing_for(most - 1)), blocks[0].surfels) << "one too few";
+  EXPECT_EQ(glyphs_in_motion(spacing_for(most - 1)), blocks[0].items) << "one too few";
 }
 
 TEST_F(Glyphs, HaveTheirProgramsAfterTheWarmUp) {

@@ -106,7 +106,7 @@ model::EncodedBlock encode_balls(std::span<const Ball> balls) {
   model::EncodedBlock block;
   block.kind = BallKind().name();
   block.grid = kGrid;
-  block.surfels = static_cast<uint32_t>(balls.size());
+  block.items = static_cast<uint32_t>(balls.size());
   block.origin = kGrid.index(balls.front().centre);
   glm::i64vec3 highest = block.origin;
   for (const Ball& ball : balls) {

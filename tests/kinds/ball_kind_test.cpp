@@ -72,7 +72,7 @@ TEST(Kinds, ABlockIsLoadedByItsKind) {
   const FileBlocks blocks(model, kinds, *find_kinds(*model, kinds));
   uint32_t balls = 0;
   for (uint32_t b = 0; b < model->blocks().size(); ++b) {
-    const uint32_t items = model->blocks()[b].surfels;
+    const uint32_t items = model->blocks()[b].items;
     const Result<residency::PackedBlock> packed = blocks.load(b, true);
     ASSERT_TRUE(packed) << packed.error().message;
     EXPECT_EQ(packed->attributes.size(), packed->texels.size());

@@ -1,5 +1,3 @@
-#include "kinds/grid_kind.h"
-
 #include <algorithm>
 #include <functional>
 #include <utility>
@@ -8,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "kinds/brick_block.h"
+#include "kinds/built_in_kinds.h"
 #include "kinds/kind_table.h"
 #include "model/model_writer.h"
 #include "model/test_folder.h"
@@ -63,7 +62,7 @@ TEST(GridKind, loads_the_texels_and_the_scale_of_a_brick) {
   const Result<residency::PackedBlock> packed = GridKind().load(*model, 0, true);
   ASSERT_TRUE(packed) << packed.error().message;
   EXPECT_EQ(packed->texels.size(), volume::packed_texels({4, 1, 1}));
-  EXPECT_LE(packed->texels.size(), 2 * model->blocks()[0].surfels);
+  EXPECT_LE(packed->texels.size(), 2 * model->blocks()[0].items);
   EXPECT_EQ(packed->texels[0], glm::uvec4(0x10000, 0x30002, 0x50004, 0x70006));
   EXPECT_EQ(packed->attributes.size(), packed->texels.size());
   const auto* brick = dynamic_cast<const BrickBlock*>(packed->header.get());
@@ -94,7 +93,7 @@ TEST(GridKind, blocks_that_differ_from_the_tables_are_refused_in_one_line) {
   const model::TestFolder folder;
   using Change = std::function<void(model::EncodedBlock&)>;
   const std::vector<std::pair<Change, const char*>> faults{
-      {[](model::EncodedBlock& b) { b.surfels += 1; }, "it has a wrong number of items"},
+      {[](model::EncodedBlock& b) { b.items += 1; }, "it has a wrong number of items"},
       {[](model::EncodedBlock& b) { b.brick->high = 6; }, "it has values outside its range"},
       {[](model::EncodedBlock& b) { b.brick->low = 1; }, "it has values outside its range"},
       {[](model::EncodedBlock& b) { b.bytes.pop_back(); }, "its samples cannot be unpacked"},

@@ -90,7 +90,7 @@ Status read_all(const std::filesystem::path& path) {
   for (size_t b = 0; b < model->blocks().size(); ++b) {
     const Result<DecodedBlock> block = model->decode(b);
     if (!block) return fail(block);
-    if (block->size() != model->blocks()[b].surfels || !usable(*block)) {
+    if (block->size() != model->blocks()[b].items || !usable(*block)) {
       return fail(ErrorKind::kInternal, "a wrong decode");
     }
   }

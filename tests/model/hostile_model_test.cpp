@@ -57,7 +57,7 @@ Status read_all(const std::filesystem::path& path) {
   for (size_t b = 0; b < model->blocks().size(); ++b) {
     const Result<DecodedBlock> block = model->decode(b);
     if (!block) return fail(block);
-    if (block->size() != model->blocks()[b].surfels) return fail(ErrorKind::kInternal, "a wrong decode");
+    if (block->size() != model->blocks()[b].items) return fail(ErrorKind::kInternal, "a wrong decode");
   }
   return {};
 }
@@ -145,7 +145,7 @@ TEST(HostileModel, WrongBlocksWithRightChecksumsFailOrDecode) {
   const std::vector<uint32_t>& members = std::get<std::vector<uint32_t>>(cloud.scalars[0].values);
   const surfel::Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
   const EncodedBlock block = encode_block(cloud, members, grid);
-  const BlockShape shape{grid, block.origin, block.extent, block.surfels, 8, scalars};
+  const BlockShape shape{grid, block.origin, block.extent, block.items, 8, scalars};
   ASSERT_TRUE(decode_block(block.bytes, shape, 1));
 
   std::mt19937 random(4);
@@ -155,13 +155,13 @@ TEST(HostileModel, WrongBlocksWithRightChecksumsFailOrDecode) {
       bytes[random() % bytes.size()] ^= static_cast<std::byte>(1u << random() % 8);
     const Result<DecodedBlock> decoded = decode_block(bytes, shape, random() % 2);
     if (decoded) {
-      ASSERT_EQ(decoded->size(), block.surfels);
+      ASSERT_EQ(decoded->size(), block.items);
     }
   }
   for (size_t length = 0; length < block.bytes.size(); ++length) {
     const Result<DecodedBlock> decoded = decode_block(std::span(block.bytes).first(length), shape, length % 2);
     if (decoded) {
-      ASSERT_EQ(decoded->size(), block.surfels);
+      ASSERT_EQ(decoded->size(), block.items);
     }
   }
 }

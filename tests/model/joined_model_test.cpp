@@ -211,7 +211,7 @@ TEST(JoinedModel, HasCoarseBlocksAboveItsMembers) {
   ASSERT_TRUE(top);
   const ldc::BlockEntry& entry = model.blocks()[root];
   EXPECT_NEAR(static_cast<double>(top->size()), 64 * 64, 200) << "a surfel for each ray";
-  EXPECT_LE(top->size(), entry.surfels);
+  EXPECT_LE(top->size(), entry.items);
   double area = 0;
   double red = 0;
   double intensity = 0;
@@ -293,7 +293,7 @@ ModelPointer volume_model(const std::filesystem::path& path, const std::string& 
     for (uint32_t octant = 0; octant < (level == 0 ? 4U : 1U); ++octant) {
       EncodedBlock block;
       block.bytes.assign(7, std::byte{42});
-      block.surfels = 5;
+      block.items = 5;
       block.spacing = block.max_radius = level == 0 ? 1.0F : 2.0F;
       block.kind = kGridKind;
       block.brick = {0, level, {octant % 2, octant / 2, 0}, 0, 1};

@@ -23,7 +23,7 @@ EncodedBlock foreign_block(const char* kind, uint32_t items) {
   block.bytes.assign(5, std::byte{42});
   block.origin = {10, 20, 30};
   block.extent = {1, 2, 3};
-  block.surfels = items;
+  block.items = items;
   block.spacing = 0.5F;
   block.max_radius = 2;
   block.kind = kind;
@@ -62,7 +62,7 @@ TEST(Kinds, AreCountedAndTheirBlocksAreReadAsTheyAre) {
   for (size_t b = 0; b < model->blocks().size(); ++b) {
     const Result<StoredBlock> stored = model->stored(b);
     ASSERT_TRUE(stored);
-    EXPECT_EQ(stored->items, model->blocks()[b].surfels);
+    EXPECT_EQ(stored->items, model->blocks()[b].items);
     EXPECT_EQ(model->decode(b).has_value(), model->blocks()[b].kind == 0);
     if (model->blocks()[b].kind == 0) continue;
     EXPECT_EQ(stored->bytes.size(), 5U);
@@ -108,7 +108,7 @@ TEST(Kinds, WrongTablesOfThemAreRefused) {
   Directory directory;
   directory.grids = {surfel::Grid{}};
   BlockRecord block;
-  block.surfels = 1;
+  block.items = 1;
   block.spacing = block.max_radius = 1;
   block.offset = kHeaderBytes;
   block.kind = 1;

@@ -16,7 +16,7 @@ TopBlock tile(const glm::dvec3& min, double side, uint32_t surfels, uint32_t mem
   top.entry.bounds.include(min);
   top.entry.bounds.include(min + glm::dvec3(side, side, 0.1));
   top.entry.spacing = top.entry.max_radius = side / 100;
-  top.entry.surfels = surfels;
+  top.entry.items = surfels;
   top.entry.kind = 2;
   top.member = member;
   top.leaf = true;
@@ -57,7 +57,7 @@ void expect_tree_of(const MemberLevels& levels, const std::vector<TopBlock>& top
       EXPECT_EQ(shared.members, below[i]);
       EXPECT_EQ(shared.children.first, tree.children(static_cast<uint32_t>(i)).first);
       EXPECT_EQ(shared.children.count, tree.children(static_cast<uint32_t>(i)).count);
-      EXPECT_LE(entries[i].surfels, ldc::kMaxCoarseSurfels);
+      EXPECT_LE(entries[i].items, ldc::kMaxCoarseSurfels);
     }
     if (node.entry.parent == ldc::BlockEntry::kNoParent) continue;
     const ldc::BlockEntry& parent = entries[node.entry.parent];

@@ -257,7 +257,7 @@ TEST(ModelFile, StatesBoundsRadiiSpacingAndNormalsOfEachBlock) {
     const ldc::BlockEntry& entry = model.blocks()[b];
     const Result<DecodedBlock> block = model.decode(b);
     ASSERT_TRUE(block);
-    ASSERT_EQ(block->size(), entry.surfels);
+    ASSERT_EQ(block->size(), entry.items);
     geometry::Box box;
     for (size_t i = 0; i < block->size(); ++i) box.include(block->position(i));
     EXPECT_EQ(box.min, entry.bounds.min);

@@ -59,13 +59,13 @@ TEST(ModelWriter, StatesTheTreeWithParentsFirstAndSiblingsSideBySide) {
   EXPECT_EQ(model->info().levels, 3);
   const ldc::BlockTree& tree = model->tree();
   ASSERT_EQ(tree.roots().size(), 1U);
-  EXPECT_EQ(tree.blocks()[0].surfels, 5U);
+  EXPECT_EQ(tree.blocks()[0].items, 5U);
   EXPECT_EQ(tree.blocks()[0].level, 2);
   ASSERT_EQ(tree.children(0).count, 2U);
-  EXPECT_EQ(tree.blocks()[1].surfels, 40U);
+  EXPECT_EQ(tree.blocks()[1].items, 40U);
   EXPECT_EQ(tree.blocks()[1].level, 0);
   EXPECT_EQ(tree.blocks()[1].key, ldc::OctreeKey{}.child(7));
-  EXPECT_EQ(tree.blocks()[2].surfels, 10U);
+  EXPECT_EQ(tree.blocks()[2].items, 10U);
   EXPECT_EQ(tree.blocks()[2].level, 1);
   EXPECT_EQ(tree.children(2).first, 3U);
   EXPECT_EQ(tree.children(2).count, 2U);

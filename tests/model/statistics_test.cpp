@@ -129,7 +129,7 @@ Directory tables() {
   directory.scalars = {{"intensity", 2, true}, {"time", 9, false}};
   directory.grids = {surfel::Grid{}};
   BlockRecord block;
-  block.surfels = 1;
+  block.items = 1;
   block.spacing = block.max_radius = 1;
   block.offset = kHeaderBytes;
   directory.blocks = {block};

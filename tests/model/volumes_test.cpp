@@ -7,9 +7,9 @@
 #include <random>
 
 #include "model/format.h"
+#include "model/kind_tables.h"
 #include "model/model_writer.h"
 #include "model/round_trip.h"
-#include "model/volume_tables.h"
 
 namespace surfcast::model {
 namespace {
@@ -39,7 +39,7 @@ Volume small_volume() {
 EncodedBlock brick_block(uint32_t level, const glm::u32vec3& brick) {
   EncodedBlock block;
   block.bytes.assign(7, std::byte{42});
-  block.surfels = 5;
+  block.items = 5;
   block.spacing = block.max_radius = level == 0 ? 1.0F : 2.0F;
   block.kind = kGridKind;
   block.brick = {0, level, brick, -1500.5F, 3000};

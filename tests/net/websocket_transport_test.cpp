@@ -1,5 +1,3 @@
-#include "net/websocket_transport.h"
-
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -16,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "net/raw_websocket.h"
+#include "net/transports.h"
 
 namespace surfcast::net {
 namespace {

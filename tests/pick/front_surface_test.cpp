@@ -186,7 +186,7 @@ TEST_F(FrontSurface, NumbersCountTheSurfelsOfTheLeaves) {
   for (uint32_t block = 0; block < model.blocks().size(); ++block) {
     if (model.tree().children(block).count > 0) continue;
     EXPECT_EQ(numbers[block], leaves);
-    leaves += model.blocks()[block].surfels;
+    leaves += model.blocks()[block].items;
   }
   EXPECT_EQ(leaves, model.info().surfels);
 }

@@ -329,7 +329,7 @@ TEST_F(PickSurfel, BlocksAreDecodedOnceWithinTheBudget) {
   SourceBlocks blocks(size_t{1} << 30);
   const auto first = *blocks.get(model, 1);
   EXPECT_EQ(*blocks.get(model, 1), first);
-  EXPECT_GT(first->bytes(), size_t{32} * model.blocks()[1].surfels);
+  EXPECT_GT(first->bytes(), size_t{32} * model.blocks()[1].items);
   SourceBlocks none(1000);
   EXPECT_NE(*none.get(model, 1), *none.get(model, 1)) << "a block of some hundred kilobytes";
 }

@@ -30,7 +30,7 @@ TEST(BlockTable, IsATreeOfNestedCells) {
   const BlockTable table = plan(tree);
   EXPECT_TRUE(ldc::BlockTree::is_tree(table.entries));
   for (const ldc::BlockEntry& entry : table.entries) {
-    EXPECT_LE(entry.surfels, model::kMaxBlockSurfels);
+    EXPECT_LE(entry.items, model::kMaxBlockSurfels);
     EXPECT_GT(entry.spacing, 0);
     EXPECT_FALSE(entry.bounds.empty());
     if (entry.parent == ldc::BlockEntry::kNoParent) continue;

@@ -89,7 +89,7 @@ TEST(PointTreeLeaves, BlocksAreWithinWhatTheirEntriesState) {
     const Result<model::DecodedBlock> block = model->decode(i);
     ASSERT_TRUE(block) << block.error().message;
     empty += block->size() == 0 ? 1 : 0;
-    EXPECT_LE(block->size(), entry.surfels);
+    EXPECT_LE(block->size(), entry.items);
     for (size_t k = 0; k < block->size(); ++k) {
       const glm::dvec3 p = block->position(k);
       EXPECT_TRUE(glm::all(glm::lessThanEqual(entry.bounds.min, p)) &&

@@ -1,12 +1,10 @@
-#include "render/draw_to_error.h"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "render/draw_to_time.h"
+#include "render/draw_to_goal.h"
 #include "render/sampled_error.h"
 
 namespace surfcast::render {

@@ -1,7 +1,7 @@
-#include "gl/reset_status.h"
-
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
+
+#include "gl/device_status.h"
 
 namespace surfcast::gl {
 namespace {

@@ -187,7 +187,7 @@ TEST(ClearBlocks, AreThoseInWhichTheirFunctionAndTheirDescendantsShowNothing) {
   const auto brick = [](uint32_t level, uint32_t i, float low, float high) {
     model::EncodedBlock block;
     block.bytes.assign(7, std::byte{42});
-    block.surfels = 5;
+    block.items = 5;
     block.spacing = block.max_radius = level == 0 ? 1.0F : 2.0F;
     block.kind = model::kGridKind;
     block.brick = {0, level, {i, 0, 0}, low, high};

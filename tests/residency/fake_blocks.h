@@ -35,7 +35,7 @@ class FakeBlocks : public residency::BlockSource {
     }
     if (damaged_.contains(block)) return fail(ErrorKind::kInvalidInput, "block " + std::to_string(block) + ": damaged");
     residency::PackedBlock packed;
-    packed.texels.assign(tree_.blocks()[block].surfels, glm::uvec4(block));
+    packed.texels.assign(tree_.blocks()[block].items, glm::uvec4(block));
     if (attributes) packed.attributes.assign(packed.texels.size(), block);
     return packed;
   }

@@ -114,7 +114,7 @@ TEST(SelectBlocks, AWallOf64BlocksHasUnlikeLevelsNearAndFar) {
   for (int i = 0; i < 64; ++i) {
     ldc::BlockEntry cell = block_at({1.1, 0, -2 * i - 1}, 1, 0.05);
     cell.parent = 0;
-    cell.surfels = 4096;
+    cell.items = 4096;
     blocks.push_back(cell);
   }
   for (uint32_t i = 1; i <= 64; ++i) split(blocks, i, 8, 4096);

@@ -15,7 +15,7 @@ inline ldc::BlockEntry block_at(const glm::dvec3& centre, double half_side, doub
   block.bounds.include(centre + half_side);
   block.spacing = spacing;
   block.max_radius = spacing;
-  block.surfels = 1000;
+  block.items = 1000;
   return block;
 }
 
@@ -40,7 +40,7 @@ inline uint32_t split(std::vector<ldc::BlockEntry>& blocks, uint32_t parent, int
     child.bounds.min.x = box.min.x + i * width;
     child.bounds.max.x = child.bounds.min.x + width;
     child.spacing = child.max_radius = 0.5 * blocks[parent].spacing;
-    child.surfels = surfels;
+    child.items = surfels;
     blocks.push_back(child);
   }
   return first;
@@ -60,7 +60,7 @@ inline std::vector<ldc::BlockEntry> random_tree(std::mt19937& random, int depth,
       const glm::dvec3 side(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1);
       ldc::BlockEntry child = block_at(box.centre() + side * quarter, quarter.x, 0.5 * blocks[i].spacing);
       child.parent = i;
-      child.surfels = 500 + static_cast<uint32_t>(random() % 16000);
+      child.items = 500 + static_cast<uint32_t>(random() % 16000);
       if (oriented) child = facing(child, glm::normalize(glm::vec3(unit(random), unit(random), unit(random))), 0.5F);
       blocks.push_back(child);
       depths.push_back(depths[i] + 1);

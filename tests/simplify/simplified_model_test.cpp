@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "builder/build_model.h"
-#include "kinds/surfel_kind.h"
+#include "kinds/built_in_kinds.h"
 #include "model/model_file.h"
 #include "shared/frame_layout.h"
 #include "simplify/smooth_scenes.h"
@@ -85,7 +85,7 @@ TEST_F(SimplifiedModel, IsPackedWithTwoTexelsForEachSurfel) {
     if (model->blocks()[b].level > 0) continue;
     const Result<residency::PackedBlock> packed = kinds::SurfelKind().load(*model, b, true);
     ASSERT_TRUE(packed);
-    EXPECT_EQ(packed->texels.size(), 2 * model->blocks()[b].surfels);
+    EXPECT_EQ(packed->texels.size(), 2 * model->blocks()[b].items);
     EXPECT_EQ(packed->attributes.size(), packed->texels.size());
     std::vector<residency::TexelRun> runs;
     packed->header->add_runs({0, 1e9F}, runs);

@@ -69,7 +69,7 @@ model::EncodedBlock encoded(const PlainBrick& brick, const std::vector<uint16_t>
   constexpr double kLattice = 4096;
   block.grid = {glm::dvec3(step / kLattice), low};
   block.extent = glm::u32vec3(glm::ceil((high - low) / block.grid.scale));
-  block.surfels = volume::brick_items(brick.header.count);
+  block.items = volume::brick_items(brick.header.count);
   block.spacing = static_cast<float>(1.08 * std::ldexp(step, static_cast<int>(brick.header.level)));
   block.max_radius = block.spacing;
   block.bytes.resize(sizeof brick + codes.size() * sizeof(uint16_t));

@@ -12,7 +12,7 @@
 #include "model/test_folder.h"
 #include "pick/front_surface.h"
 #include "pick/pick_surfel.h"
-#include "service/volume_sights.h"
+#include "service/sights.h"
 
 namespace surfcast::pick {
 namespace {

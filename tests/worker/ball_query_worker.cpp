@@ -12,7 +12,6 @@
 
 #include "kinds/ball_kind.h"
 #include "worker/channel.h"
-#include "worker/run_query_worker.h"
 #include "worker/run_worker.h"
 
 namespace {

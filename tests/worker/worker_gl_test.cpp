@@ -19,7 +19,7 @@
 #include "base/stopwatch.h"
 #include "kinds/ball_scene.h"
 #include "model/test_folder.h"
-#include "service/local_renderer.h"
+#include "service/renderer_factories.h"
 #include "worker/worker_renderer.h"
 
 namespace surfcast::worker {

@@ -1,11 +1,10 @@
-#include "builder/append_blocks.h"
-
 #include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "builder/append_steps.h"
 #include "builder/ordered_work.h"
 #include "builder/part_blocks.h"
 #include "ldc/subtree.h"
@@ -88,7 +87,7 @@ class AppendPass {
     same.grid = stored->grid;
     same.origin = stored->origin;
     same.extent = stored->extent;
-    same.surfels = stored->items;
+    same.items = stored->items;
     same.scatter = stored->scatter;
     same.spacing = static_cast<float>(entry.spacing);
     same.max_radius = static_cast<float>(entry.max_radius);

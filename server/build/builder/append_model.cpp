@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "base/spool_file.h"
-#include "builder/append_blocks.h"
 #include "builder/append_checks.h"
 #include "builder/append_inputs.h"
-#include "builder/append_points.h"
+#include "builder/append_steps.h"
 #include "builder/build_checks.h"
 #include "builder/cloud_columns.h"
 #include "builder/model_properties.h"
@@ -136,7 +135,7 @@ surfel::SurfelCloud common_cloud_of(const AppendInputs& inputs) {
 /// Bytes of the surfels of the topmost blocks that are copied, from which the levels above are made.
 uint64_t bytes_of_front(const model::ModelFile& model, const AppendPlan& plan) {
   uint64_t surfels = 0;
-  for (const uint32_t block : plan.kept) surfels += model.blocks()[block].surfels;
+  for (const uint32_t block : plan.kept) surfels += model.blocks()[block].items;
   return surfels * sizeof(ldc::CoarseSurfel);
 }
 

@@ -203,7 +203,7 @@ class AppendPlanner {
       uint32_t& region = plan_.region_of[leaf];
       if (region != AppendPlan::kNoRegion) continue;
       region = static_cast<uint32_t>(plan_.regions.size());
-      part.count += entry(leaf).surfels;
+      part.count += entry(leaf).items;
     }
     plan_.regions.push_back(std::move(part));
   }

@@ -1,5 +1,3 @@
-#include "builder/append_points.h"
-
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "builder/append_steps.h"
 #include "builder/ordered_work.h"
 #include "scan/merge_schemas.h"
 

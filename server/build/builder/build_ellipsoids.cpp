@@ -1,12 +1,11 @@
-#include "builder/build_ellipsoids.h"
-
 #include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "builder/build_kinds.h"
 #include "builder/ellipsoid_survey.h"
-#include "builder/ellipsoid_tree.h"
+#include "builder/kind_trees.h"
 #include "builder/sorted_ellipsoids.h"
 #include "ellipsoid/ellipsoid_input.h"
 

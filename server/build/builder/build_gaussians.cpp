@@ -1,11 +1,10 @@
-#include "builder/build_gaussians.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 
+#include "builder/build_kinds.h"
 #include "builder/gaussian_sample.h"
-#include "builder/gaussian_tree.h"
+#include "builder/kind_trees.h"
 #include "gaussian/gaussian_format.h"
 #include "gaussian/gaussian_reader.h"
 

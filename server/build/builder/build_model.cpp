@@ -6,11 +6,9 @@
 #include <utility>
 
 #include "builder/build_checks.h"
-#include "builder/build_ellipsoids.h"
-#include "builder/build_gaussians.h"
 #include "builder/build_inputs.h"
+#include "builder/build_kinds.h"
 #include "builder/build_parts.h"
-#include "builder/build_volumes.h"
 #include "builder/grid_input.h"
 #include "builder/memory_budget.h"
 #include "builder/model_output.h"

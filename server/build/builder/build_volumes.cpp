@@ -1,11 +1,10 @@
-#include "builder/build_volumes.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "builder/build_kinds.h"
 #include "builder/field_input.h"
 #include "builder/grid_input.h"
 #include "builder/volume_pass.h"

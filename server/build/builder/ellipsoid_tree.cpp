@@ -1,9 +1,8 @@
-#include "builder/ellipsoid_tree.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "builder/cell_tree.h"
+#include "builder/kind_trees.h"
 #include "ellipsoid/ellipsoid_block.h"
 #include "ellipsoid/merge_ellipsoids.h"
 

@@ -1,8 +1,7 @@
-#include "builder/gaussian_tree.h"
-
 #include <vector>
 
 #include "builder/cell_tree.h"
+#include "builder/kind_trees.h"
 #include "gaussian/gaussian_block.h"
 #include "gaussian/merge_gaussians.h"
 

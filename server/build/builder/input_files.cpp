@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/ascii_text.h"
-#include "builder/build_gaussians.h"
+#include "builder/build_kinds.h"
 #include "builder/grid_input.h"
 #include "builder/mesh_input.h"
 #include "ellipsoid/ellipsoid_input.h"

@@ -98,7 +98,7 @@ void block_fields(Block& block, const Use& use) {
   vector_fields(block.grid.offset, use);
   vector_fields(block.origin, use);
   vector_fields(block.extent, use);
-  use(block.surfels);
+  use(block.items);
   use(block.scatter);
   use(block.spacing);
   use(block.max_radius);

@@ -1,5 +1,3 @@
-#include "exporter/copc_file.h"
-
 #include <array>
 #include <string_view>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "exporter/las_bytes.h"
 #include "exporter/las_coding.h"
 #include "exporter/node_pages.h"
+#include "exporter/octree_files.h"
 #include "laz/laszip_record.h"
 
 namespace surfcast::exporter {

@@ -1,5 +1,3 @@
-#include "exporter/ept_folder.h"
-
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -18,6 +16,7 @@
 #include "exporter/las_bytes.h"
 #include "exporter/las_coding.h"
 #include "exporter/node_pages.h"
+#include "exporter/octree_files.h"
 #include "scan/json_access.h"
 #include "scan/las_header.h"
 #include "scan/las_reader.h"

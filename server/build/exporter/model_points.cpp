@@ -90,7 +90,7 @@ Status ModelPoints::describe() {
     const ldc::BlockEntry& entry = model_->blocks()[i];
     if (model_->tree().children(i).count != 0) continue;
     const uint64_t first = next;
-    next += entry.surfels;
+    next += entry.items;
     if (!has_points(*model_, entry)) continue;
     if (may_hold(entry.bounds)) leaves_.push_back({i, first});
     sample = i;
@@ -193,7 +193,7 @@ Result<PointFacts> ModelPoints::count(size_t piece, WantedFacts wanted) const {
   if (wanted == WantedFacts::kNumber && takes_all_of(entry.bounds) && !model_->info().in_place) {
     PointFacts facts;
     const uint64_t first = first_row(leaves_[piece].first);
-    if (first < entry.surfels) facts.count = 1 + (entry.surfels - 1 - first) / step();
+    if (first < entry.items) facts.count = 1 + (entry.items - 1 - first) / step();
     return facts;
   }
   const auto returns = std::ranges::find(schema_.scalars, scan::ScalarField{"return_number", scan::ScalarType::kUint8});

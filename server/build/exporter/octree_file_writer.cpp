@@ -5,8 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "exporter/copc_file.h"
-#include "exporter/ept_folder.h"
+#include "exporter/octree_files.h"
 #include "exporter/record_places.h"
 #include "scan/scalar_type.h"
 

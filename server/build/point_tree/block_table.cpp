@@ -125,7 +125,7 @@ class Planner {
     entry.parent = parent;
     entry.key = plan.share == Share::kOctant ? node.key.child(plan.octant) : node.key;
     entry.bounds = box_of(plan);
-    entry.surfels = room;
+    entry.items = room;
     entry.max_radius = largest_radius(tree_, plan.node, radius_);
     entry.spacing = radius_ * share;
     if (plan.leaf) {

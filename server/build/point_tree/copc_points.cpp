@@ -1,5 +1,3 @@
-#include "point_tree/copc_points.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "base/invalid_input.h"
 #include "laz/laz_file.h"
+#include "point_tree/tree_formats.h"
 #include "scan/copc_index.h"
 #include "scan/las_header.h"
 #include "scan/las_reader.h"

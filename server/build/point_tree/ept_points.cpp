@@ -1,8 +1,7 @@
-#include "point_tree/ept_points.h"
-
 #include <utility>
 
 #include "base/invalid_input.h"
+#include "point_tree/tree_formats.h"
 #include "scan/ept_index.h"
 
 namespace surfcast::point_tree {

@@ -192,7 +192,7 @@ Result<std::vector<MadeBlock>> divide_surfels(const NodeTree& tree, const BlockT
   std::vector<MadeBlock> blocks;
   for (const uint32_t number : table.of_node[node]) {
     const BlockPlan& plan = table.plans[number];
-    const size_t room = table.entries[number].surfels;
+    const size_t room = table.entries[number].items;
     MadeBlock block{number, cloud, members_of(tree, plan, surfels.codes), {}};
     if (plan.leaf) block.members = part_of(block.members, plan);
     if (block.members.size() > room && plan.leaf) {

@@ -12,11 +12,9 @@
 #include "geometry/zone.h"
 #include "model/elevation_range.h"
 #include "model/statistics.h"
-#include "point_tree/copc_points.h"
-#include "point_tree/ept_points.h"
 #include "point_tree/make_blocks.h"
-#include "point_tree/potree_points.h"
 #include "point_tree/tree_blocks.h"
+#include "point_tree/tree_formats.h"
 
 namespace surfcast::point_tree {
 namespace {

@@ -1,5 +1,3 @@
-#include "point_tree/potree_points.h"
-
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -7,6 +5,7 @@
 
 #include "base/file_source.h"
 #include "base/invalid_input.h"
+#include "point_tree/tree_formats.h"
 #include "scan/potree_reader.h"
 
 namespace surfcast::point_tree {

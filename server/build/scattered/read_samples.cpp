@@ -13,7 +13,7 @@
 #include "estimation/neighbours.h"
 #include "estimation/sites.h"
 #include "geometry/box.h"
-#include "scan/attribute_names.h"
+#include "scan/column_names.h"
 
 namespace surfcast::scattered {
 namespace {

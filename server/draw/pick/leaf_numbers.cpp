@@ -8,7 +8,7 @@ std::vector<uint64_t> leaf_numbers(const model::ModelFile& model) {
   uint64_t next = 0;
   for (uint32_t block = 0; block < model.blocks().size(); ++block) {
     numbers.push_back(next);
-    if (model.tree().children(block).count == 0) next += model.blocks()[block].surfels;
+    if (model.tree().children(block).count == 0) next += model.blocks()[block].items;
   }
   return numbers;
 }

@@ -1,11 +1,9 @@
-#include "render/draw_to_error.h"
-
 #include <algorithm>
 #include <limits>
 #include <utility>
 #include <vector>
 
-#include "render/drawing_time.h"
+#include "render/draw_to_goal.h"
 #include "render/sampled_error.h"
 
 namespace surfcast::render {

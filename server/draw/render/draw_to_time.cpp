@@ -1,9 +1,7 @@
-#include "render/draw_to_time.h"
-
 #include <limits>
 #include <utility>
 
-#include "render/drawing_time.h"
+#include "render/draw_to_goal.h"
 
 namespace surfcast::render {
 

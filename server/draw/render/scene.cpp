@@ -45,13 +45,13 @@ Scene::Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<cons
   uint32_t first = 0;
   for (const ldc::BlockEntry& block : blocks_->tree().blocks()) {
     first_surfels_.push_back(first);
-    first += block.surfels;
+    first += block.items;
   }
   if (!kinds_.glyphs) return;
   const auto stored = model_->blocks();
   for (uint32_t block = 0; block < stored.size(); ++block) {
     const bool glyphs = blocks_->kind(block).drawn_as() == kinds::DrawnAs::kGlyphs;
-    glyphs_.push_back(glyphs ? stored[block].surfels : 0);
+    glyphs_.push_back(glyphs ? stored[block].items : 0);
   }
 }
 

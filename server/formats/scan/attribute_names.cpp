@@ -1,9 +1,8 @@
-#include "scan/attribute_names.h"
-
 #include <array>
 #include <utility>
 
 #include "base/ascii_text.h"
+#include "scan/column_names.h"
 
 namespace surfcast::scan {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "scan/attribute_names.h"
+#include "scan/column_names.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {

@@ -12,7 +12,7 @@
 
 #include "base/contract.h"
 #include "base/invalid_input.h"
-#include "scan/attribute_names.h"
+#include "scan/column_names.h"
 #include "scan/las_reader.h"
 #include "scan/oct_normal.h"
 #include "scan/potree_index.h"

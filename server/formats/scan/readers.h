@@ -72,7 +72,7 @@ Result<std::unique_ptr<RowSource>> ptx_rows(std::span<const std::byte> bytes);
 ///   each column, among them x, y and z.
 /// - A first line with a single integer is the number of rows (PTS). Further blocks with their own count may follow.
 /// - Every row must have the same number of columns as the first.
-/// - Without a header, columns are guessed (text_columns.h).
+/// - Without a header, columns are guessed (column_names.h).
 ///
 /// Text is assumed to come from surveys: z-up.
 Result<std::unique_ptr<RowSource>> text_rows(std::span<const std::byte> bytes);

@@ -1,6 +1,6 @@
 #include "scan/row_filter.h"
 
-#include "scan/attribute_names.h"
+#include "scan/column_names.h"
 
 namespace surfcast::scan {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "scan/text_columns.h"
+#include "scan/column_names.h"
 #include "scan/up_axis.h"
 #include "surfel/opacity.h"
 

@@ -1,7 +1,7 @@
-#include "scan/text_columns.h"
-
 #include <algorithm>
 #include <array>
+
+#include "scan/column_names.h"
 
 namespace surfcast::scan {
 namespace {

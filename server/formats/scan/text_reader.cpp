@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "scan/attribute_names.h"
+#include "scan/column_names.h"
 #include "scan/readers.h"
 #include "scan/text_tokens.h"
 

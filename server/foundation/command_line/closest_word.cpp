@@ -1,7 +1,7 @@
-#include "command_line/closest_word.h"
-
 #include <algorithm>
 #include <vector>
+
+#include "command_line/parse_failure.h"
 
 namespace surfcast::command_line {
 namespace {

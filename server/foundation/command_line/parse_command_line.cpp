@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iostream>
 
-#include "command_line/closest_word.h"
 #include "command_line/parse_failure.h"
 #include "command_line/shell_completion.h"
 

@@ -37,7 +37,7 @@ bool is_software_device(EGLDeviceEXT device) {
   return has_word(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
-/// A context that tells of a reset of the GPU (reset_status.h), or one that does not where there is no such thing.
+/// A context that tells of a reset of the GPU (device_status.h), or one that does not where there is no such thing.
 EGLContext new_context(EGLDisplay display) {
   std::array<EGLint, 9> attributes = {EGL_CONTEXT_MAJOR_VERSION,
                                       4,

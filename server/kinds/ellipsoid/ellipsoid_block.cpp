@@ -204,7 +204,7 @@ model::EncodedBlock encode_ellipsoids(const Ellipsoids& ellipsoids, const model:
   const double scale = source.scale();
   model::EncodedBlock block;
   block.kind = model::kEllipsoidKind;
-  block.surfels = static_cast<uint32_t>(ellipsoids.size());
+  block.items = static_cast<uint32_t>(ellipsoids.size());
   block.grid = model::item_lattice(ellipsoids.positions, tolerance_of(ellipsoids, scale));
   const std::vector<glm::ivec3> indices = model::item_indices(ellipsoids.positions, block);
   const std::vector<uint32_t> path = model::path_order(indices);

@@ -2,9 +2,7 @@
 
 #include <utility>
 
-#include "ellipsoid/ellipsoid_table.h"
-#include "ellipsoid/grid_tensors.h"
-#include "ellipsoid/vtk_tensors.h"
+#include "ellipsoid/input_formats.h"
 #include "grid/grid_format.h"
 #include "grid/grid_reader.h"
 #include "grid/vtk_points.h"

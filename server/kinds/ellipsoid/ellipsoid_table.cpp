@@ -1,11 +1,10 @@
-#include "ellipsoid/ellipsoid_table.h"
-
 #include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "ellipsoid/input_formats.h"
 #include "ellipsoid/shape_columns.h"
 #include "ellipsoid/table_columns.h"
 #include "scan/ply_header.h"

@@ -1,10 +1,9 @@
-#include "ellipsoid/grid_tensors.h"
-
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
+#include "ellipsoid/input_formats.h"
 #include "ellipsoid/shape_columns.h"
 
 namespace surfcast::ellipsoid {

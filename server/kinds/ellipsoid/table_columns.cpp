@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "scan/attribute_names.h"
+#include "scan/column_names.h"
 
 namespace surfcast::ellipsoid {
 namespace {

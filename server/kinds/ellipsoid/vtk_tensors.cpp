@@ -1,5 +1,3 @@
-#include "ellipsoid/vtk_tensors.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -7,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "ellipsoid/grid_tensors.h"
+#include "ellipsoid/input_formats.h"
 #include "ellipsoid/shape_columns.h"
 #include "grid/vtk_legacy_file.h"
 #include "scan/text_tokens.h"

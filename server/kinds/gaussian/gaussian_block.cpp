@@ -117,7 +117,7 @@ model::EncodedBlock encode_gaussians(const Gaussians& gaussians, const BlockTrai
   SURFCAST_EXPECTS(gaussians.size() > 0);
   model::EncodedBlock block;
   block.kind = kGaussianKind;
-  block.surfels = static_cast<uint32_t>(gaussians.size());
+  block.items = static_cast<uint32_t>(gaussians.size());
   block.grid = model::item_lattice(gaussians.positions, tolerance_of(gaussians));
   const std::vector<glm::ivec3> indices = model::item_indices(gaussians.positions, block);
   const std::vector<uint32_t> path = model::path_order(indices);

@@ -1,9 +1,8 @@
-#include "kinds/ellipsoid_kind.h"
-
 #include <utility>
 
 #include "ellipsoid/ellipsoid_block.h"
 #include "ellipsoid/pack_ellipsoids.h"
+#include "kinds/built_in_kinds.h"
 #include "kinds/decoded_ellipsoids.h"
 #include "kinds/glyph_block.h"
 #include "residency/block_pool.h"

@@ -9,10 +9,10 @@ FileBlocks::FileBlocks(std::shared_ptr<const model::ModelFile> model, KindTable 
   std::vector<ldc::BlockEntry> blocks(model_->blocks().begin(), model_->blocks().end());
   bool differs = false;
   for (uint32_t block = 0; block < blocks.size(); ++block) {
-    const uint64_t texels = kinds_[kind_of(block)]->texels(model_->info(), blocks[block].surfels);
+    const uint64_t texels = kinds_[kind_of(block)]->texels(model_->info(), blocks[block].items);
     const uint64_t items = (texels + residency::kMaxPackedPerSurfel - 1) / residency::kMaxPackedPerSurfel;
-    differs |= items != blocks[block].surfels;
-    blocks[block].surfels = static_cast<uint32_t>(items);
+    differs |= items != blocks[block].items;
+    blocks[block].items = static_cast<uint32_t>(items);
   }
   if (differs) tree_.emplace(std::move(blocks));
 }
@@ -21,7 +21,7 @@ Result<residency::PackedBlock> FileBlocks::load(uint32_t block, bool attributes)
   Result<residency::PackedBlock> packed = kinds_[kind_of(block)]->load(*model_, block, attributes);
   // Selection and residency rely on this limit.
   SURFCAST_EXPECTS(!packed ||
-                   packed->texels.size() <= size_t{residency::kMaxPackedPerSurfel} * tree().blocks()[block].surfels);
+                   packed->texels.size() <= size_t{residency::kMaxPackedPerSurfel} * tree().blocks()[block].items);
   return packed;
 }
 

@@ -1,10 +1,9 @@
-#include "kinds/gaussian_kind.h"
-
 #include <algorithm>
 #include <utility>
 
 #include "gaussian/gaussian_block.h"
 #include "gaussian/pack_gaussians.h"
+#include "kinds/built_in_kinds.h"
 #include "kinds/decoded_gaussians.h"
 #include "residency/block_pool.h"
 #include "shared/frame_layout.h"

@@ -1,8 +1,7 @@
-#include "kinds/grid_kind.h"
-
 #include <utility>
 
 #include "kinds/brick_block.h"
+#include "kinds/built_in_kinds.h"
 #include "kinds/grid_block.h"
 #include "volume/packing.h"
 #include "volume/read_brick.h"

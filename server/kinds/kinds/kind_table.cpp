@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "kinds/ellipsoid_kind.h"
-#include "kinds/gaussian_kind.h"
-#include "kinds/grid_kind.h"
-#include "kinds/surfel_kind.h"
+#include "kinds/built_in_kinds.h"
 
 namespace surfcast::kinds {
 

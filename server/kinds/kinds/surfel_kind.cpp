@@ -1,9 +1,8 @@
-#include "kinds/surfel_kind.h"
-
 #include <algorithm>
 #include <glm/vec2.hpp>
 #include <utility>
 
+#include "kinds/built_in_kinds.h"
 #include "kinds/decoded_surfels.h"
 #include "residency/packing.h"
 #include "shared/frame_layout.h"

@@ -63,7 +63,7 @@ model::EncodedBlock brick_block(const Brick& brick, const model::Volume& volume,
   block.grid = lattice;
   block.origin = glm::i64vec3(first);
   block.extent = glm::u32vec3(last - first);
-  block.surfels = brick_items(header.count);
+  block.items = brick_items(header.count);
   // 1.08 as for surfels: selection compares spacings of all kinds.
   block.spacing = static_cast<float>(1.08 * std::ldexp(largest_step(volume), static_cast<int>(header.level)));
   block.max_radius = block.spacing;

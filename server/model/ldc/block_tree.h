@@ -24,7 +24,7 @@ struct BlockEntry {
   double spacing = 0;
   double max_radius = 0;                        ///< largest radius of its surfels: extends `bounds` to hold the discs
   std::optional<geometry::NormalCone> normals;  ///< contains all its normals; none when the model is not oriented
-  uint32_t surfels = 0;                         ///< or items of another kind
+  uint32_t items = 0;                           ///< surfels, or items of another kind
   uint64_t offset = 0;                          ///< of its bytes in the file
   uint32_t bytes = 0;
   uint64_t checksum = 0;  ///< 64-bit XXH3 of its bytes

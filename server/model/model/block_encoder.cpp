@@ -154,7 +154,7 @@ EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint
   SURFCAST_EXPECTS(!members.empty());
   EncodedBlock block;
   block.grid = grid;
-  block.surfels = static_cast<uint32_t>(members.size());
+  block.items = static_cast<uint32_t>(members.size());
   block.scatter = count_scatter(cloud, members);
   const Path path = path_of(cloud, members, grid, block);
   const std::vector<uint32_t>& ordered = path.members;

@@ -23,7 +23,7 @@ struct EncodedBlock {
   surfel::Grid grid;
   glm::i64vec3 origin{0};  ///< lowest lattice index of its surfels
   glm::u32vec3 extent{0};  ///< largest index, counted from `origin`
-  uint32_t surfels = 0;    ///< or items of another kind
+  uint32_t items = 0;      ///< surfels, or items of another kind
   uint32_t scatter = 0;    ///< how many of them lie on no surface
   float spacing = 0;       ///< median radius; where there are both discs and scatter, of the discs
   float max_radius =

@@ -1,8 +1,8 @@
-#include "model/ellipsoid_tables.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "model/kind_tables.h"
 
 namespace surfcast::model {
 namespace {

@@ -22,7 +22,7 @@ Facing facing_of_leaves(const ModelFile& model) {
   Facing facing;
   for (const ldc::BlockEntry& block : model.blocks()) {
     if (block.level > 0) continue;
-    const auto weight = static_cast<double>(block.surfels);
+    const auto weight = static_cast<double>(block.items);
     facing.weight += weight;
     if (block.normals) facing.normals += glm::dvec3(block.normals->axis) * weight;
   }

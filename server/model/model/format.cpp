@@ -11,9 +11,8 @@
 #include "base/hash.h"
 #include "ldc/lattice.h"
 #include "model/byte_stream.h"
-#include "model/ellipsoid_tables.h"
+#include "model/kind_tables.h"
 #include "model/quantize.h"
-#include "model/volume_tables.h"
 
 namespace surfcast::model {
 namespace {
@@ -74,7 +73,7 @@ void put_block(ByteWriter& writer, const BlockRecord& block) {
   writer.put(block.parent);
   writer.put(block.grid);
   writer.put(block.bytes);
-  writer.put(block.surfels);
+  writer.put(block.items);
   writer.put(block.spacing);
   writer.put(block.max_radius);
   put_cone(writer, block.normals);
@@ -91,7 +90,7 @@ std::optional<BlockRecord> get_block(ByteReader& reader) {
   block.parent = reader.get<uint32_t>();
   block.grid = reader.get<uint32_t>();
   block.bytes = reader.get<uint32_t>();
-  block.surfels = reader.get<uint32_t>();
+  block.items = reader.get<uint32_t>();
   block.spacing = reader.get<float>();
   block.max_radius = reader.get<float>();
   block.normals = get_cone(reader);
@@ -120,7 +119,7 @@ bool valid_lattice_box(const BlockRecord& block, const surfel::Grid& grid) {
 bool valid_block(const BlockRecord& block, const Directory& directory, const ModelHeader& header) {
   const bool bytes_inside = block.offset >= kHeaderBytes && block.offset <= header.directory_offset &&
                             block.bytes <= header.directory_offset - block.offset;
-  return bytes_inside && block.surfels >= 1 && block.surfels <= kMaxBlockSurfels && std::isfinite(block.spacing) &&
+  return bytes_inside && block.items >= 1 && block.items <= kMaxBlockSurfels && std::isfinite(block.spacing) &&
          block.spacing > 0 && std::isfinite(block.max_radius) && block.max_radius >= block.spacing &&
          block.grid < directory.grids.size() && valid_lattice_box(block, directory.grids[block.grid]);
 }
@@ -208,7 +207,7 @@ Status get_kinds(ByteReader& reader, Directory& directory) {
 Status get_scatter(ByteReader& reader, Directory& directory) {
   for (BlockRecord& block : directory.blocks) {
     block.scatter = reader.get<uint32_t>();
-    if (block.scatter > block.surfels) return damaged("model has a wrong count of scatter");
+    if (block.scatter > block.items) return damaged("model has a wrong count of scatter");
   }
   return {};
 }

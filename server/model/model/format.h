@@ -63,7 +63,7 @@ struct BlockRecord {
   uint32_t grid = 0;  ///< index into Directory::grids
   glm::i64vec3 origin{0};
   glm::u32vec3 extent{0};
-  uint32_t surfels = 0;
+  uint32_t items = 0;
   float spacing = 0;
   float max_radius = 0;
   std::optional<geometry::NormalCone> normals;

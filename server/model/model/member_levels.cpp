@@ -21,7 +21,7 @@ constexpr int kFewestLines = ldc::kLdcLines / 4;
 
 uint64_t surfels_of(std::span<const TopBlock> tops, const Tops& some) {
   return std::accumulate(some.begin(), some.end(), uint64_t{0},
-                         [&](uint64_t sum, uint32_t top) { return sum + tops[top].entry.surfels; });
+                         [&](uint64_t sum, uint32_t top) { return sum + tops[top].entry.items; });
 }
 
 /// Divides top blocks by the octants of the box of their centres. Axes along which the box is short are not divided.
@@ -121,7 +121,7 @@ class Planner {
       entry.level = std::max(entry.level, child.entry.level + 1);
       // Surfels that have no finer ones do not make the block coarser.
       if (!is_leaf(child)) entry.spacing = std::max(entry.spacing, child.entry.spacing);
-      surfels += child.entry.surfels;
+      surfels += child.entry.items;
       shared.members |= members_of(child);
       shared.oriented = shared.oriented && is_oriented(child);
     }
@@ -130,7 +130,7 @@ class Planner {
     entry.spacing = std::max(entry.spacing, spacing(ldc::kLdcLines));
     entry.max_radius = std::max(entry.max_radius, std::numbers::sqrt2 * spacing(kFewestLines));
     shared.max_radius = static_cast<float>(entry.max_radius);
-    entry.surfels = static_cast<uint32_t>(std::min<uint64_t>(surfels, ldc::kMaxCoarseSurfels));
+    entry.items = static_cast<uint32_t>(std::min<uint64_t>(surfels, ldc::kMaxCoarseSurfels));
   }
 
   [[nodiscard]] bool is_oriented(const MemberLevelNode& node) const {

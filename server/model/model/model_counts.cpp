@@ -14,9 +14,9 @@ void count_blocks(std::span<const ldc::BlockEntry> blocks, ModelInfo& info) {
     ++kind.blocks;
     if (block.level > 0) continue;
     info.bounds.include(block.bounds);
-    kind.items += block.surfels;
+    kind.items += block.items;
     if (kind.kind != kGridKind) {
-      slabs.push_back({{block.bounds.min[up_axis], block.bounds.max[up_axis]}, block.surfels});
+      slabs.push_back({{block.bounds.min[up_axis], block.bounds.max[up_axis]}, block.items});
     }
   }
   info.elevation = elevation_range(slabs);

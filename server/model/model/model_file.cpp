@@ -11,9 +11,9 @@
 #include "model/format.h"
 #include "model/joined_blocks.h"
 #include "model/joined_model.h"
+#include "model/kind_tables.h"
 #include "model/model_counts.h"
 #include "model/stored_blocks.h"
-#include "model/volume_tables.h"
 
 namespace surfcast::model {
 
@@ -39,7 +39,7 @@ ldc::BlockEntry make_entry(const BlockRecord& record, const surfel::Grid& grid) 
   entry.spacing = double{record.spacing};
   entry.max_radius = double{record.max_radius};
   entry.normals = record.normals;
-  entry.surfels = record.surfels;
+  entry.items = record.items;
   entry.offset = record.offset;
   entry.bytes = record.bytes;
   entry.checksum = record.checksum;

@@ -42,7 +42,7 @@ BlockRecord make_record(const EncodedBlock& block, const ldc::OctreeKey& key) {
   record.key = key;
   record.origin = block.origin;
   record.extent = block.extent;
-  record.surfels = block.surfels;
+  record.items = block.items;
   record.scatter = block.scatter;
   record.spacing = block.spacing;
   record.max_radius = block.max_radius;
@@ -121,7 +121,7 @@ Result<ModelWriter> ModelWriter::create(const std::filesystem::path& target, Mod
 
 Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const ldc::OctreeKey& key,
                                   std::span<const uint32_t> children) {
-  SURFCAST_EXPECTS(block.surfels >= 1 && block.surfels <= kMaxBlockSurfels && !block.kind.empty());
+  SURFCAST_EXPECTS(block.items >= 1 && block.items <= kMaxBlockSurfels && !block.kind.empty());
   SURFCAST_EXPECTS(block.brick.has_value() == (block.kind == kGridKind));
   const auto number = static_cast<uint32_t>(state_->records.size());
   BlockRecord record = make_record(block, key);
@@ -195,7 +195,7 @@ Result<WriteReport> ModelWriter::finish() {
   WriteReport report{0, directory.blocks.size(), file.position()};
   for (size_t i = 0; i < state_->records.size(); ++i) {
     const BlockRecord& record = state_->records[i];
-    if (state_->children[i].empty() && state_->kinds[record.kind] == kSurfelKind) report.surfels += record.surfels;
+    if (state_->children[i].empty() && state_->kinds[record.kind] == kSurfelKind) report.surfels += record.items;
   }
   return report;
 }

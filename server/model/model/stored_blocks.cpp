@@ -57,7 +57,7 @@ Result<StoredBlock> StoredBlocks::stored(size_t block) const {
   // What is checked is what is decoded: the file may be overwritten at any time.
   const std::span<std::byte> bytes = buffer_of_thread(record.bytes);
   const StoredBlock stored_block{
-      bytes, directory_->grids[record.grid], record.origin, record.extent, record.surfels, record.scatter};
+      bytes, directory_->grids[record.grid], record.origin, record.extent, record.items, record.scatter};
   if (cache_ && cache_->read(record.checksum, bytes)) return stored_block;
   if (Status read = source_->read(record.offset, bytes); !read) return fail(read);
   if (checksum_of(bytes) != record.checksum) return fail(ErrorKind::kInvalidInput, "damaged");

@@ -1,10 +1,10 @@
-#include "model/volume_tables.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
+
+#include "model/kind_tables.h"
 
 namespace surfcast::model {
 namespace {

@@ -94,7 +94,7 @@ void BlockLoader::prefetch(const std::shared_ptr<const BlockSource>& source, std
     size_t bytes = 0;
     for (const uint32_t block : blocks) {
       const BlockId id{source->id(), block, attributes};
-      bytes += max_packed_bytes(source->tree().blocks()[block].surfels);
+      bytes += max_packed_bytes(source->tree().blocks()[block].items);
       if (bytes > limits_.cache_bytes / 2) break;
       if (!busy_.contains(id) && !prefetching_.contains(id) && !damaged_prefetches_.contains(id) && !cache_.find(id)) {
         prefetch_queue_.push_back({source, id});

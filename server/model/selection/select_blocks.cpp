@@ -86,7 +86,7 @@ class Selector {
   [[nodiscard]] Cost cost(uint32_t block) const {
     const uint64_t page = criteria_.page;
     const uint64_t items = criteria_.items == nullptr ? 0 : (*criteria_.items)[block];
-    return {(blocks_[block].surfels + page - 1) / page * page, items};
+    return {(blocks_[block].items + page - 1) / page * page, items};
   }
   /// Whether a budget does not hold `after`, though it would hold `before`.
   [[nodiscard]] bool exceeds(const Cost& before, const Cost& after) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,5 +37,11 @@ void to_wire(const std::string& name, const service::ModelDescription& descripti
 
 /// MIME type of a file format.
 std::string media_type(picture::FileFormat format);
+
+inline void to_wire(const glm::dvec3& v, wire::Vector3* message) {
+  message->set_x(v.x);
+  message->set_y(v.y);
+  message->set_z(v.z);
+}
 
 }  // namespace surfcast::net

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "net/convert.h"
-#include "net/convert_vector.h"
 #include "protocol/errors.h"
 #include "protocol/picture_fields.h"
 

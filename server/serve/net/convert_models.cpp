@@ -3,7 +3,6 @@
 
 #include "model/volume_facts.h"
 #include "net/convert.h"
-#include "net/convert_vector.h"
 #include "protocol/errors.h"
 
 namespace surfcast::net {

@@ -1,5 +1,3 @@
-#include "net/framed_transport.h"
-
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "net/redirect_error_to.h"
+#include "net/transports.h"
 #include "protocol/framing.h"
 #include "protocol/hello.h"
 

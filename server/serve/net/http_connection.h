@@ -7,7 +7,7 @@
 #include <string>
 
 #include "net/answers.h"
-#include "net/client_stream.h"
+#include "net/connection.h"
 #include "net/http_answer.h"
 #include "net/http_upload.h"
 #include "net/session.h"

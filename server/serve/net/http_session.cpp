@@ -1,5 +1,3 @@
-#include "net/http_session.h"
-
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -19,12 +17,12 @@
 #include "net/http_route.h"
 #include "net/http_routes.h"
 #include "net/http_upload.h"
-#include "net/message_session.h"
 #include "net/redirect_error_to.h"
 #include "net/request_guard.h"
+#include "net/sessions.h"
 #include "net/trace.h"
+#include "net/transports.h"
 #include "net/upgrade.h"
-#include "net/websocket_transport.h"
 #include "service/model_name.h"
 
 namespace surfcast::net {

@@ -1,5 +1,3 @@
-#include "net/message_session.h"
-
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -12,6 +10,7 @@
 #include "net/conversation.h"
 #include "net/reading_rate.h"
 #include "net/redirect_error_to.h"
+#include "net/sessions.h"
 #include "protocol/hello.h"
 
 namespace surfcast::net {

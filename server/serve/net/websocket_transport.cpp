@@ -1,5 +1,3 @@
-#include "net/websocket_transport.h"
-
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
@@ -10,6 +8,7 @@
 
 #include "net/heartbeat.h"
 #include "net/redirect_error_to.h"
+#include "net/transports.h"
 #include "protocol/framing.h"
 #include "protocol/hello.h"
 

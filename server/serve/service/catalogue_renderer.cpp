@@ -1,5 +1,3 @@
-#include "service/catalogue_renderer.h"
-
 #include <algorithm>
 #include <atomic>
 #include <deque>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "service/first_look.h"
+#include "service/renderer_factories.h"
 #include "service/shader_warm_up.h"
 
 namespace surfcast::service {

@@ -7,9 +7,8 @@
 #include "pick/pick_surfel.h"
 #include "pick/source_blocks.h"
 #include "render/display_options.h"
-#include "service/glyph_sights.h"
 #include "service/local_point_stream.h"
-#include "service/volume_sights.h"
+#include "service/sights.h"
 
 namespace surfcast::service {
 namespace {

@@ -1,8 +1,7 @@
-#include "service/local_renderer.h"
-
 #include <utility>
 
-#include "gl/reset_status.h"
+#include "gl/device_status.h"
+#include "service/renderer_factories.h"
 
 namespace surfcast::service {
 namespace {

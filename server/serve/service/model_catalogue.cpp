@@ -50,8 +50,8 @@ double typical_spacing(std::span<const ldc::BlockEntry> blocks) {
   uint64_t surfels = 0;
   for (const ldc::BlockEntry& block : blocks) {
     if (block.level > 0) continue;
-    leaves.emplace_back(block.spacing, block.surfels);
-    surfels += block.surfels;
+    leaves.emplace_back(block.spacing, block.items);
+    surfels += block.items;
   }
   std::sort(leaves.begin(), leaves.end());
   uint64_t below = 0;

@@ -1,5 +1,3 @@
-#include "worker/run_query_worker.h"
-
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
@@ -21,6 +19,7 @@
 #include "worker/block_watch.h"
 #include "worker/channel.h"
 #include "worker/offered_models.h"
+#include "worker/run_worker.h"
 #include "worker/worker_life.h"
 
 namespace surfcast::worker {

@@ -12,7 +12,7 @@
 #include "base/file_source.h"
 #include "base/log_format.h"
 #include "base/stopwatch.h"
-#include "gl/reset_status.h"
+#include "gl/device_status.h"
 #include "model/model_file.h"
 #include "render/renderer.h"
 #include "service/guarded.h"
