@@ -1,8 +1,8 @@
-// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop]: plays camera paths over emulated links to a
-// server on this machine that serves these models, and compares what a client shows at each instant with the picture of
-// its camera at that instant: as clients without depth show it (the newest frame), warped by depth, and warped from a
-// video. `near`: from a quarter of the distance. `fps`: frames a second that the clients with depth ask for. `link`:
-// this one alone.
+// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop] [rest]: plays camera paths over emulated links
+// to a server on this machine that serves these models, and compares what a client shows at each instant with the
+// picture of its camera at that instant: as clients without depth show it (the newest frame), warped by depth, and
+// warped from a video. `near`: from a quarter of the distance. `fps`: frames a second that the clients with depth ask
+// for. `link`: this one alone.
 //
 // For each path and link a row of a Markdown table: frames a second, kilobytes a second, their width in pixels; then
 // over instants 50 ms apart, PSNR in dB over covered pixels (mean, and the value that one in ten is below) and the
@@ -16,8 +16,12 @@
 //
 // `drop`: instead, the link of the clients with depth has its rate for 4 s, a tenth of it for 4 s, and its rate again.
 // For each half second: frames, kilobytes and width; and the longest time without a frame.
+//
+// `rest`: instead, a movement ends after a second. PSNR of what is shown at instants after that, by a client that shows
+// whole frames only, and by one that shows early ones too (client::View::Frame::whole).
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -66,6 +70,7 @@ struct Arrived {
   double seconds = 0;  ///< since the movement began
   wire::ViewFrame frame;
   uint64_t bytes = 0;
+  bool whole = true;
 };
 
 wire::Camera to_message(const Camera& camera) {
@@ -109,9 +114,15 @@ struct Player {
   client::ViewWishes wishes;
 };
 
-/// The frames of a movement, and before them the one at rest from which it begins. `tick` gets the seconds since.
+Arrived arrived_after(Clock::time_point start, client::View::Frame frame) {
+  const double seconds = std::chrono::duration<double>(frame.arrived - start).count();
+  return {seconds, std::move(frame.frame), frame.bytes, frame.whole};
+}
+
+/// The frames of a movement, and before them the one at rest from which it begins; then those of a rest of so many
+/// seconds. `tick` gets the seconds since.
 std::vector<Arrived> play(const Player& player, const Path& path, double seconds,
-                          const std::function<void(double)>& tick) {
+                          const std::function<void(double)>& tick, double rest = 0) {
   client::ServerConnection connection =
       value_or_exit(client::ServerConnection::open({.host = "127.0.0.1", .port = player.port}, {}));
   client::View view =
@@ -134,7 +145,14 @@ std::vector<Arrived> play(const Player& player, const Path& path, double seconds
     const auto frame = value_or_exit(view.next_until(until));
     if (!frame) continue;
     if (!view.painted(*frame)) std::exit(1);
-    frames.push_back({std::chrono::duration<double>(frame->arrived - start).count(), frame->frame, frame->bytes});
+    frames.push_back(arrived_after(start, *frame));
+  }
+  if (rest <= 0) return frames;
+  value_or_exit(view.show(request_of(player.model, path.at(player.begin, seconds)), /*moving=*/false));
+  const auto end = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds + rest));
+  while (const auto frame = value_or_exit(view.next_until(end))) {
+    if (!view.painted(*frame)) std::exit(1);
+    frames.push_back(arrived_after(start, *frame));
   }
   return frames;
 }
@@ -237,6 +255,32 @@ void print_drop(const std::vector<Arrived>& frames) {
     std::printf("%4.1f s: %3.0f frames/s, %4.0f KB/s, %5.0f pixels, longest %4.0f ms\n", kPart * part,
                 static_cast<double>(arrived.size()) / kPart, kilobytes / kPart, width, 1000 * longest[part]);
   }
+}
+
+constexpr double kMoved = 1;  // seconds of a movement before a rest
+constexpr std::array kRestedFor{0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.2, 1.4, 1.6, 2.0, 2.5};
+
+/// PSNR of what is shown at instants of a rest, at whose camera the true picture is.
+std::vector<double> quality_at_rest(const std::vector<Arrived>& frames, bool early, const Camera& camera,
+                                    const picture::Image& truth) {
+  const geometry::CameraFrame target = value_or_exit(geometry::make_camera_frame(camera, kWidth, kHeight));
+  window::VideoDecoder video;
+  warp::WarpFrame rest = decoded(frames.front().frame, video);
+  warp::WarpFrame shown = rest;
+  bool shows_rest = false;
+  std::vector<double> quality;
+  size_t next = 1;
+  for (const double seconds : kRestedFor) {
+    for (; next < frames.size() && frames[next].seconds + kDecode <= kMoved + seconds; ++next) {
+      const Arrived& frame = frames[next];
+      if (!frame.whole && !early) continue;
+      shown = decoded(frame.frame, video);
+      shows_rest = !frame.frame.moving();
+    }
+    quality.push_back(
+        bench::compare(warp::warp(shown, shows_rest ? nullptr : &rest, target, {0, 0, 0, 255}), truth).psnr);
+  }
+  return quality;
 }
 
 constexpr double kDisplayed = 1.0 / 60;
@@ -364,6 +408,24 @@ class Lab {
     }
   }
 
+  void run_rest() {
+    std::printf("\n| %s | link | KB |", name_.c_str());
+    for (const double seconds : kRestedFor) std::printf(" %.1f s |", seconds);
+    std::printf("\n");
+    for (const Path& path : bench::paths()) {
+      const Camera camera = path.at(begin_, kMoved);
+      const picture::Image truth = truth_at(camera);
+      for (const Link& link : links_) {
+        const testing::LinkRelay relay(server_, shape_of(link));
+        client::ViewWishes wishes{fps_, true, true};
+        wishes.early = true;
+        const auto frames = play(
+            {relay.port(), name_, begin_, wishes}, path, kMoved, [](double) {}, kRestedFor.back() + 1);
+        for (const bool early : {false, true}) print_rest(path, link, frames, early, camera, truth);
+      }
+    }
+  }
+
   void run_drop() {
     const Path path = bench::paths().front();
     for (const Link& link : links_) {
@@ -382,6 +444,19 @@ class Lab {
   }
 
  private:
+  static void print_rest(const Path& path, const Link& link, const std::vector<Arrived>& frames, bool early,
+                         const Camera& camera, const picture::Image& truth) {
+    const auto refined = std::ranges::find_if(frames, [](const Arrived& one) {
+      return one.seconds > kMoved && one.whole && !one.frame.moving() && !one.frame.picture().converged();
+    });
+    std::printf("| %s, %s | %.0f Mbit/s, %d ms | %.0f |", path.name.c_str(), early ? "early" : "whole", link.megabits,
+                link.round_trip,
+                refined == frames.end() ? 0.0 : static_cast<double>(refined->frame.picture().data().size()) / 1000);
+    for (const double psnr : quality_at_rest(frames, early, camera, truth)) std::printf(" %.1f |", psnr);
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+
   static testing::LinkShape shape_of(const Link& link) {
     return {link.megabits * 1e6, std::chrono::microseconds(500 * link.round_trip)};
   }
@@ -398,18 +473,19 @@ class Lab {
     std::fflush(stdout);
   }
 
+  [[nodiscard]] picture::Image truth_at(const Camera& camera) const {
+    picture::PictureRequest request;
+    request.camera = camera;
+    request.width = kWidth;
+    request.height = kHeight;
+    request.spacing = 1;
+    request.silhouettes = true;
+    return bench::draw_or_exit(*renderer_, model_, request).image;
+  }
+
   [[nodiscard]] Truth truth_of(const Path& path, double from, double to, double every) const {
     Truth truth;
-    for (int i = 0; from + i * every < to; ++i) {
-      const double now = from + i * every;
-      picture::PictureRequest request;
-      request.camera = path.at(begin_, now);
-      request.width = kWidth;
-      request.height = kHeight;
-      request.spacing = 1;
-      request.silhouettes = true;
-      truth.push_back(bench::draw_or_exit(*renderer_, model_, request).image);
-    }
+    for (int i = 0; from + i * every < to; ++i) truth.push_back(truth_at(path.at(begin_, from + i * every)));
     return truth;
   }
 
@@ -426,12 +502,13 @@ class Lab {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop]\n");
+    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop] [rest]\n");
     return 2;
   }
   bool near = false;
   bool drop = false;
   bool steps = false;
+  bool rest = false;
   double fps = 0;
   std::vector<Link> links{{1000, 0}, {20, 50}, {20, 150}, {4, 150}, {20, 300}};
   std::vector<std::string> models;
@@ -442,6 +519,8 @@ int main(int argc, char** argv) {
       drop = true;
     } else if (word == "steps") {
       steps = true;
+    } else if (word == "rest") {
+      rest = true;
     } else if (word.starts_with("fps=")) {
       fps = std::atof(word.c_str() + 4);
     } else if (word.starts_with("link=")) {
@@ -452,7 +531,7 @@ int main(int argc, char** argv) {
   }
   for (const std::string& model : models) {
     Lab lab(static_cast<uint16_t>(std::atoi(argv[1])), model, near, fps, links);
-    drop ? lab.run_drop() : steps ? lab.run_steps() : lab.run();
+    rest ? lab.run_rest() : drop ? lab.run_drop() : steps ? lab.run_steps() : lab.run();
   }
   return 0;
 }

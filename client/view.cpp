@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "client/jpeg_scans.h"
 #include "protocol/errors.h"
 
 namespace surfcast::client {
@@ -14,7 +15,7 @@ Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& p
   if (wishes.video) request.mutable_open_view()->add_video(wire::VIDEO_CODEC_VP9);
   const Result<uint64_t> id = connection.send(std::move(request));
   if (!id) return fail(id);
-  View view(connection, *id);
+  View view(connection, *id, wishes.early);
   view.bytes_before_ = connection.bytes_received();
   return view;
 }
@@ -43,7 +44,20 @@ Status View::acknowledge(uint64_t frame, double client_ms) {
   return connection_->send_as(id_, std::move(request));
 }
 
-/// Adds a piece to the current frame; returns the frame once it is complete.
+/// What can be shown of the current frame and has not been yet.
+std::optional<View::Frame> View::early_frame() {
+  const wire::Picture& picture = incomplete_->picture();
+  if (!early_ || picture.format() != wire::FILE_FORMAT_JPEG) return std::nullopt;
+  const size_t shown = showable_bytes(picture.data());
+  if (shown <= shown_) return std::nullopt;
+  shown_ = shown;
+  Frame frame{*incomplete_, Clock::now(), 0, /*whole=*/false};
+  frame.frame.set_more(false);
+  frame.frame.mutable_picture()->set_data(picture.data().substr(0, shown).append(kEndOfJpeg));
+  return frame;
+}
+
+/// Adds a piece to the current frame; returns the frame once it is complete, or what can be shown of it.
 Result<std::optional<View::Frame>> View::take(wire::ViewFrame piece) {
   const bool more = piece.more();
   if (incomplete_ && incomplete_->frame() != piece.frame()) {
@@ -54,10 +68,11 @@ Result<std::optional<View::Frame>> View::take(wire::ViewFrame piece) {
     incomplete_->mutable_picture()->mutable_data()->append(piece.picture().data());
   } else {
     incomplete_ = std::move(piece);
+    shown_ = 0;
   }
   if (more) {
     if (Status status = acknowledge(incomplete_->frame(), 0); !status) return fail(status);
-    return std::nullopt;
+    return early_frame();
   }
   incomplete_->set_more(false);
   const uint64_t total = connection_->bytes_received();
@@ -83,6 +98,7 @@ Result<std::optional<View::Frame>> View::next_until(Clock::time_point deadline) 
 }
 
 Status View::painted(const Frame& frame) {
+  if (!frame.whole) return {};  // its pieces have been acknowledged
   const std::chrono::duration<double, std::milli> took = Clock::now() - frame.arrived;
   return acknowledge(frame.frame.frame(), took.count());
 }

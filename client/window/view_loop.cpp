@@ -93,6 +93,7 @@ class ViewLoop {
   bool undecodable_ = false;  ///< a packet of the video
   WarpedView shown_;
   bool arrived_ = false;         ///< a frame that has not been shown
+  uint64_t rest_shown_ = 0;      ///< the frame at rest that is shown; 0: one in motion
   wire::Camera painted_camera_;  ///< what is on the screen was painted for it
   FrameRate rate_;
 };
@@ -127,7 +128,8 @@ Status ViewLoop::reopen_without_video(client::ServerConnection& connection) {
 
 Status ViewLoop::begin_view(client::ServerConnection& connection) {
   video_ = VideoDecoder();
-  const client::ViewWishes wishes{request_.target_fps, /*depth=*/true, video_wanted_};
+  rest_shown_ = 0;
+  const client::ViewWishes wishes{request_.target_fps, /*depth=*/true, video_wanted_, /*early=*/true};
   Result<client::View> view = client::View::open(connection, picture(), wishes);
   if (!view) return fail(view);
   view_.emplace(std::move(*view));
@@ -218,6 +220,8 @@ Status ViewLoop::paint() {
 }
 
 Status ViewLoop::take(client::View& view, const client::View::Frame& frame) {
+  // Another frame at rest is sharper than this one so far.
+  if (!frame.whole && rest_shown_ != 0 && rest_shown_ != frame.frame.frame()) return {};
   const wire::Picture& picture = frame.frame.picture();
   Result<PixelImage> image = decode_frame(frame.frame, video_);
   if (!image && frame.frame.has_video()) {
@@ -233,9 +237,10 @@ Status ViewLoop::take(client::View& view, const client::View::Frame& frame) {
   }
   shown_.take(frame.frame, std::move(*image));
   arrived_ = true;
+  rest_shown_ = frame.frame.moving() ? 0 : frame.frame.frame();
   if (Status status = paint(); !status) return status;
   if (Status status = view.painted(frame); !status) return status;
-  rate_.count(frame.arrived);
+  if (frame.whole) rate_.count(frame.arrived);
   const std::string state = frame.frame.moving()  ? std::to_string(rate_.last()) + " frames/s"
                             : picture.converged() ? "sharp"
                                                   : "getting sharper";

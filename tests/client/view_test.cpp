@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "client/jpeg_file.h"
+#include "client/jpeg_scans.h"
 #include "client/scripted_server.h"
 #include "protocol/framed.h"
 #include "protocol/framing.h"
@@ -84,12 +86,12 @@ View::Clock::time_point soon() {
 /// A view of a server that says all of this at once.
 class ViewTest : public ::testing::Test {
  protected:
-  void open(const std::string& words) {
+  void open(const std::string& words, bool early = false) {
     server_ = std::make_unique<ScriptedServer>(hello() + words, /*stays=*/true);
     auto connection = ServerConnection::open(server_->endpoint(), {});
     ASSERT_TRUE(connection);
     connection_ = std::make_unique<ServerConnection>(std::move(*connection));
-    auto view = View::open(*connection_, picture(), {.target_fps = 25});
+    auto view = View::open(*connection_, picture(), {.target_fps = 25, .early = early});
     ASSERT_TRUE(view);
     view_ = std::make_unique<View>(*view);
   }
@@ -127,6 +129,47 @@ TEST_F(ViewTest, AFrameWhoseRestWasGivenUpIsDropped) {
   EXPECT_EQ((*frame)->frame.frame(), 2u);
   EXPECT_EQ((*frame)->frame.picture().data(), "newer");
   EXPECT_EQ(view_->abandoned(), 1u);
+}
+
+/// One message of a JPEG file.
+std::string jpeg_piece(const std::string& data, bool more) {
+  wire::Answer answer;
+  answer.set_id(1);
+  wire::ViewFrame& view = *answer.mutable_view_frame();
+  view.set_frame(1);
+  view.mutable_picture()->set_format(wire::FILE_FORMAT_JPEG);
+  view.mutable_picture()->set_data(data);
+  view.set_more(more);
+  return said(answer);
+}
+
+TEST_F(ViewTest, WhatCanBeShownOfAFrameComesBeforeItIsWholeWhereThatIsWished) {
+  const std::string file = jpeg_file(picture::JpegOrder::kScans);
+  const size_t cut = file.size() * 4 / 5;
+  const std::string words = jpeg_piece(file.substr(0, cut), true) + jpeg_piece(file.substr(cut), false);
+  open(words, /*early=*/true);
+  const auto early = view_->next_until(soon());
+  ASSERT_TRUE(early && *early);
+  EXPECT_FALSE((*early)->whole);
+  EXPECT_FALSE((*early)->frame.more());
+  const std::string& shown = (*early)->frame.picture().data();
+  ASSERT_TRUE(shown.ends_with(kEndOfJpeg));
+  EXPECT_TRUE(file.starts_with(shown.substr(0, shown.size() - kEndOfJpeg.size())));
+  ASSERT_TRUE(view_->painted(**early));
+  const auto frame = view_->next_until(soon());
+  ASSERT_TRUE(frame && *frame);
+  EXPECT_TRUE((*frame)->whole);
+  EXPECT_EQ((*frame)->frame.picture().data(), file);
+  ASSERT_TRUE(view_->painted(**frame));
+  EXPECT_EQ(said_by_client().size(), 3U) << "the view, and one acknowledgement for each piece";
+}
+
+TEST_F(ViewTest, OnlyWholeFramesComeWithoutThatWish) {
+  const std::string file = jpeg_file(picture::JpegOrder::kScans);
+  open(jpeg_piece(file.substr(0, file.size() - 1), true) + jpeg_piece(file.substr(file.size() - 1), false));
+  const auto frame = view_->next_until(soon());
+  ASSERT_TRUE(frame && *frame);
+  EXPECT_EQ((*frame)->frame.picture().data(), file);
 }
 
 TEST_F(ViewTest, UpdatesCarryTheViewsIdAndGrowingNumbers) {

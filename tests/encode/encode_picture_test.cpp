@@ -95,6 +95,16 @@ TEST(EncodePicture, JpegComesBackClose) {
   EXPECT_LT(largest_error(make_picture(301, 77), decoded), 90);  // at the hard edge of the corner
 }
 
+TEST(EncodePicture, AJpegFromCoarseToFineHasTheSamePixelsInFewerBytes) {
+  const picture::Image image = make_picture(301, 77);
+  const auto rows = encode_picture(image, picture::FileFormat::kJpeg, 90);
+  const auto scans = encode_picture(image, picture::FileFormat::kJpeg, 90, picture::JpegOrder::kScans);
+  ASSERT_TRUE(rows && scans);
+  EXPECT_LT(scans->size(), rows->size());
+  EXPECT_EQ(decode<uint8_t>(*rows, "jpg", OIIO::TypeDesc::UINT8).values,
+            decode<uint8_t>(*scans, "jpg", OIIO::TypeDesc::UINT8).values);
+}
+
 TEST(EncodePicture, WebpComesBackClose) {
   const picture::Image image = make_picture(301, 77);
   const auto bytes = encode_picture(image, picture::FileFormat::kWebp, 95);
@@ -137,7 +147,7 @@ TEST(EncodePicture, ChannelsComeBackToTheLastBitAndTheColorsStayTheSame) {
     const uint32_t depth = std::bit_cast<uint32_t>(i % 7 == 0 ? infinite : 0.1F * static_cast<float>(i));
     channels.words.insert(channels.words.end(), {depth, std::bit_cast<uint32_t>(-0.5F), 0xffffff00U + i % 256});
   }
-  const auto bytes = encode_picture(image, picture::FileFormat::kExr, 90, &channels);
+  const auto bytes = encode_picture(image, picture::FileFormat::kExr, 90, picture::JpegOrder::kRows, &channels);
   ASSERT_TRUE(bytes);
   OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes->data()), bytes->size());
   const auto input = OIIO::ImageInput::open("memory.exr", nullptr, &memory);
@@ -161,7 +171,7 @@ TEST(EncodePicture, ChannelsComeBackToTheLastBitAndTheColorsStayTheSame) {
       ASSERT_EQ(words[6 * i + place], expected) << names[c] << ' ' << i;
     }
   }
-  EXPECT_EQ(*encode_picture(image, picture::FileFormat::kExr, 90, &channels), *bytes);
+  EXPECT_EQ(*encode_picture(image, picture::FileFormat::kExr, 90, picture::JpegOrder::kRows, &channels), *bytes);
 }
 
 TEST(EncodePicture, TheSameImageGivesTheSameBytes) {

@@ -43,6 +43,7 @@ class ViewOfAScanTest : public ::testing::Test {
     };
     ViewOptions options;
     options.video = video_;
+    options.depth = depth_;
     view_ =
         std::make_shared<ViewSession>(*service_, 1, service::authorized("cube"), 1, options, counts_, std::move(port));
     update();
@@ -101,6 +102,7 @@ class ViewOfAScanTest : public ::testing::Test {
   service::FakeModels models_;
   std::shared_ptr<service::FakeRendererControl> control_ = std::make_shared<service::FakeRendererControl>();
   bool video_ = false;
+  bool depth_ = false;
   /// So much later each message is acknowledged than the one before, as over a link that it occupies for so long.
   std::chrono::milliseconds every_message_{0};
   std::chrono::milliseconds late_{0};

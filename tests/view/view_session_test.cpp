@@ -67,6 +67,38 @@ TEST_F(ViewOfAScanTest, StaysWithTheModelOnceItWasShown) {
   EXPECT_TRUE(std::ranges::none_of(frames_, [](const ViewMessage& frame) { return frame.picture.preview; }));
 }
 
+/// Whether a JPEG file is progressive: it has the marker of such a frame (ITU-T T.81, table B.1).
+bool is_progressive(const ViewMessage& frame) {
+  const std::vector<std::byte>& bytes = frame.picture.bytes;
+  const std::array marker{std::byte{0xFF}, std::byte{0xC2}};
+  return std::ranges::search(bytes, marker).begin() != bytes.end();
+}
+
+TEST_F(ViewOfAScanTest, FilesAreThoseOfAPictureWithoutDepth) {
+  ASSERT_TRUE(move_until([](const ViewMessage& frame) { return frame.moving; }));
+  update();
+  ASSERT_TRUE(run_until(is_final));
+  EXPECT_TRUE(std::ranges::none_of(frames_, is_progressive));
+}
+
+class ViewWithDepthTest : public ViewOfAScanTest {
+ protected:
+  ViewWithDepthTest() { depth_ = true; }
+};
+
+TEST_F(ViewWithDepthTest, AFrameAtRestGoesFromCoarseToFine) {
+  ASSERT_TRUE(move_until([](const ViewMessage& frame) { return frame.moving; }));
+  update();
+  ASSERT_TRUE(run_until(is_final));
+  size_t refined = 0;
+  for (const ViewMessage& frame : frames_) {
+    const bool expected = !frame.moving && !is_final(frame);
+    EXPECT_EQ(is_progressive(frame), expected) << frame.frame;
+    refined += expected ? 1 : 0;
+  }
+  EXPECT_GE(refined, 1U);
+}
+
 TEST_F(ViewOfAScanTest, OnlyTheFinalFrameIsDrawnToAnError) {
   ASSERT_TRUE(run_until(is_final));
   control_->requests.clear();

@@ -1,9 +1,14 @@
 #include "client/window/decode_picture.h"
 
+#include <cmath>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "client/jpeg_file.h"
+#include "client/jpeg_scans.h"
 #include "encode/encode_picture.h"
 
 namespace surfcast::window {
@@ -39,6 +44,32 @@ TEST(DecodePicture, JpegIsNearThem) {
   EXPECT_EQ(image->width, 3);
   EXPECT_NEAR(image->pixels[0], 50, 8);
   EXPECT_NEAR(image->pixels[2], 200, 8);
+}
+
+TEST(DecodePicture, WhatCanBeShownOfAJpegIsNearTheWhole) {
+  const std::string file = client::jpeg_file(picture::JpegOrder::kScans);
+  const auto decoded = [](const std::string& data) {
+    wire::Picture picture;
+    picture.set_format(wire::FILE_FORMAT_JPEG);
+    picture.set_data(data);
+    return decode_picture(picture);
+  };
+  const auto whole = decoded(file);
+  ASSERT_TRUE(whole);
+  double before = 1e9;
+  for (size_t length = 0, shown = 0; length <= file.size(); ++length) {
+    const size_t now = client::showable_bytes(std::string_view(file).substr(0, length));
+    if (now == std::exchange(shown, now)) continue;
+    const auto early = decoded(file.substr(0, now).append(client::kEndOfJpeg));
+    ASSERT_TRUE(early) << now;
+    double error = 0;
+    for (size_t i = 0; i < whole->pixels.size(); ++i) error += std::pow(early->pixels[i] - whole->pixels[i], 2);
+    error = std::sqrt(error / static_cast<double>(whole->pixels.size()));
+    EXPECT_LT(error, 12) << now;  // levels, root mean square
+    EXPECT_LE(error, before) << now;
+    before = error;
+  }
+  EXPECT_EQ(before, 0);
 }
 
 TEST(DecodePicture, EveryTruncationOfAPngIsAnError) {

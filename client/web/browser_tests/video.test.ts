@@ -4,6 +4,13 @@ import { LinkRelay } from './support/programs';
 import { Wire } from './support/wire';
 import { useYard } from './support/yard';
 
+declare global {
+  interface Window {
+    /** JPEG files whose pictures were painted, in this order. */
+    paintedFiles: number[][];
+  }
+}
+
 const yard = useYard();
 
 /** Opens the yard over a thin link, and drags until the condition holds. */
@@ -35,6 +42,32 @@ describe('a view over a thin link', () => {
     expect(wire.frames.filter(({ moving, video }) => !moving && video)).toEqual([]);
     expect(wire.opened.map(({ video }) => video.length)).toEqual([1]); // it was not opened again without
     expect(await look.differenceFrom(yard.page, await yard.renderedFromAddress())).toBe(0);
+  });
+
+  it('shows a frame at rest from coarse to fine while it arrives', async () => {
+    await yard.page.addInitScript(() => {
+      window.paintedFiles = [];
+      const files = new WeakMap<object, Blob>();
+      const decode = window.createImageBitmap.bind(window);
+      window.createImageBitmap = async (...args: unknown[]): Promise<ImageBitmap> => {
+        const bitmap = await (decode as (...rest: unknown[]) => Promise<ImageBitmap>)(...args);
+        if (args[0] instanceof Blob && args[0].type === 'image/jpeg') files.set(bitmap, args[0]);
+        return bitmap;
+      };
+      const draw = CanvasRenderingContext2D.prototype.drawImage;
+      CanvasRenderingContext2D.prototype.drawImage = function (this: CanvasRenderingContext2D, ...args: unknown[]) {
+        (draw as (...rest: unknown[]) => void).apply(this, args);
+        const file = files.get(args[0] as object);
+        if (file) void file.arrayBuffer().then((bytes) => window.paintedFiles.push([...new Uint8Array(bytes)]));
+      };
+    });
+    let moved = 0;
+    await dragOverThinLink(() => ++moved > 60);
+    const files = await yard.page.evaluate(() => window.paintedFiles);
+    const begins = (early: number[], whole: number[]): boolean =>
+      whole.length > early.length && early.slice(0, -2).every((byte, k) => byte === whole[k]);
+    const begun = files.filter((early, i) => files.slice(i + 1).some((whole) => begins(early, whole)));
+    expect(begun.length).toBeGreaterThanOrEqual(1);
   });
 
   it('goes on with files where a packet is damaged', async () => {

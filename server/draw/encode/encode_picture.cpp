@@ -49,7 +49,7 @@ Result<std::vector<std::byte>> encode_exr(const picture::Image& image, const pic
 }  // namespace
 
 Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality,
-                                              const picture::Channels* channels) {
+                                              picture::JpegOrder order, const picture::Channels* channels) {
   SURFCAST_EXPECTS(channels == nullptr || format == picture::FileFormat::kExr);
   SURFCAST_EXPECTS(image.width > 0 && image.height > 0 && image.format == picture::pixel_format_of(format));
   SURFCAST_EXPECTS(image.pixels.size() ==
@@ -62,7 +62,7 @@ Result<std::vector<std::byte>> encode_picture(const picture::Image& image, pictu
     case picture::FileFormat::kPng:
       return encode_png(image);
     case picture::FileFormat::kJpeg:
-      return encode_jpeg(image, quality);
+      return encode_jpeg(image, quality, order);
     case picture::FileFormat::kWebp:
       return encode_webp(image, quality);
     case picture::FileFormat::kExr:

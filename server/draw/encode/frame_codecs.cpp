@@ -84,13 +84,14 @@ Result<std::vector<std::byte>> encode_png(const picture::Image& image) {
   return std::move(file.bytes);
 }
 
-Result<std::vector<std::byte>> encode_jpeg(const picture::Image& image, int quality) {
+Result<std::vector<std::byte>> encode_jpeg(const picture::Image& image, int quality, picture::JpegOrder order) {
   const std::unique_ptr<void, EndTurboJpeg> encoder(tjInitCompress());
   if (!encoder) return cannot_encode(tjGetErrorStr2(nullptr));
   uint8_t* bytes = nullptr;
   unsigned long size = 0;  // NOLINT(google-runtime-int): the type of the library
+  const int flags = TJFLAG_ACCURATEDCT | (order == picture::JpegOrder::kScans ? TJFLAG_PROGRESSIVE : 0);
   const int code = tjCompress2(encoder.get(), pixels_of(image), image.width, 0, image.height, TJPF_RGBX, &bytes, &size,
-                               TJSAMP_420, quality, TJFLAG_ACCURATEDCT);
+                               TJSAMP_420, quality, flags);
   const std::unique_ptr<uint8_t, FreeJpeg> owner(bytes);
   if (code != 0) return cannot_encode(tjGetErrorStr2(encoder.get()));
   return copy_of({bytes, size});

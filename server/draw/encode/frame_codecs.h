@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "picture/file_format.h"
 #include "picture/picture.h"
 
 namespace surfcast::encode {
@@ -14,7 +15,7 @@ namespace surfcast::encode {
 /// Lossless, by libpng.
 Result<std::vector<std::byte>> encode_png(const picture::Image& image);
 /// With colours at half the resolution (4:2:0), by libjpeg-turbo. `quality`: 1 to 100.
-Result<std::vector<std::byte>> encode_jpeg(const picture::Image& image, int quality);
+Result<std::vector<std::byte>> encode_jpeg(const picture::Image& image, int quality, picture::JpegOrder order);
 /// Lossy, by libwebp. `quality`: 1 to 100.
 Result<std::vector<std::byte>> encode_webp(const picture::Image& image, int quality);
 

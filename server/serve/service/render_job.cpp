@@ -36,10 +36,10 @@ EncodedPicture describe(const RenderJob& job, const picture::Frame& frame) {
 Result<std::vector<std::byte>> encode_file(const RenderJob& job, const picture::Frame& frame) {
   const PictureJob& picture = job.picture;
   if (picture.channels.none()) {
-    return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality);
+    return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality, picture.order);
   }
   const picture::Channels channels = make_channels(picture.channels, frame, job.front);
-  return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality, &channels);
+  return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality, picture.order, &channels);
 }
 
 /// The bytes of a picture: a packet of its video where it has one, and a file where the codec fails.

@@ -54,7 +54,8 @@ struct PictureJob {
   picture::PictureRequest request{};  ///< its pixel format is replaced by that of `format`
   bool up_from_model = false;         ///< take the model's vertical axis as the camera's view_up
   picture::FileFormat format = picture::FileFormat::kPng;
-  int quality = 90;                ///< of JPEG and WebP, 1 to 100
+  int quality = 90;  ///< of JPEG and WebP, 1 to 100
+  picture::JpegOrder order = picture::JpegOrder::kRows;
   size_t depth_bytes = 0;          ///< with PictureRequest::depth_texels: of EncodedPicture::depth, at most
   picture::ChannelSet channels{};  ///< of the file beside colours; only of EXR and of still pictures
   Priority priority = Priority::kStill;

@@ -23,7 +23,8 @@ constexpr int kRefinedQuality = 90;  // of the JPEG at rest
 constexpr double kPieceMs = 60;
 constexpr size_t kFirstPiece = size_t{64} << 10;
 constexpr size_t kMinPiece = size_t{24} << 10;
-constexpr size_t kMaxPiece = size_t{16} << 20;  // a message stays far below kMaxAnswerBytes
+constexpr size_t kMinWarpedPiece = size_t{8} << 10;  // more of them may be on the way, and each may be shown
+constexpr size_t kMaxPiece = size_t{16} << 20;       // a message stays far below kMaxAnswerBytes
 // Sides of depth maps, texels, and what they take at most. Finer ones tear where points are rough.
 constexpr int kTexelsAtRest = 160;
 constexpr int kTexelsInMotion = 80;
@@ -109,6 +110,8 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t frame, Vie
   if (picture::has_budget(request)) set_interim_spacing(request);
   job.format = picture::FileFormat::kJpeg;
   job.quality = kRefinedQuality;
+  // A client that shows what has come of it sees first what changes most.
+  if (options_.depth) job.order = picture::JpegOrder::kScans;
   if (kind == FrameKind::kTakeover) {
     request.max_missing_blocks = 0;
     job.keep_frame = may_be_kept(newest_.picture);
@@ -140,6 +143,7 @@ void ViewSession::make_motion_job(uint64_t frame, ViewTime now, service::Picture
   if (request.edition != edition_) request.max_missing_blocks = 0;
   job.priority = service::Priority::kMotion;
   job.quality = quality.jpeg_quality;
+  job.order = picture::JpegOrder::kRows;
   job.supersedes = frames_.at(frame).supersedes;
 }
 
@@ -432,7 +436,8 @@ void ViewSession::erase_if_done(uint64_t frame) {
 void ViewSession::send_pieces(ViewTime now) {
   while (outgoing_ && (plan_.may_send() || frames_.at(outgoing_->frame).video)) {
     const size_t rest = outgoing_->bytes.size() - outgoing_->sent;
-    const size_t piece = std::clamp(link_.bytes_in(kPieceMs).value_or(kFirstPiece), kMinPiece, kMaxPiece);
+    const size_t least = warps_ ? kMinWarpedPiece : kMinPiece;
+    const size_t piece = std::clamp(link_.bytes_in(kPieceMs).value_or(kFirstPiece), least, kMaxPiece);
     const bool whole = outgoing_->kind == FrameKind::kMotion || rest < piece + piece / 2;
     send_piece(whole ? rest : piece, now);
   }

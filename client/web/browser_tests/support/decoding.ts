@@ -2,12 +2,14 @@ import type { Page } from 'playwright-core';
 
 /**
  * Lets a test decide in which order the page's pictures are decoded, and tells which of them were painted. Pictures are
- * numbered from 0 as they arrive.
+ * numbered from 0 as they arrive, with those of frames that are not whole.
  */
 interface Decoding {
   /** Every second picture is decoded only after a later one was painted. */
   unordered: boolean;
   readonly painted: number[];
+  /** Of each picture: whether it is a progressive JPEG file that lacks scans. */
+  readonly early: boolean[];
   /** Pictures whose decoding is held up. */
   readonly waiting: Map<number, () => void>;
 }
@@ -21,13 +23,22 @@ declare global {
 /** Before the page is opened. */
 export const watch = (page: Page): Promise<void> =>
   page.addInitScript(() => {
-    const decoding: Decoding = { unordered: false, painted: [], waiting: new Map() };
+    const decoding: Decoding = { unordered: false, painted: [], early: [], waiting: new Map() };
     window.decoding = decoding;
     const numbers = new WeakMap<object, number>();
     let arrived = 0;
     const decode = window.createImageBitmap.bind(window);
+    const lacksScans = async (file: unknown): Promise<boolean> => {
+      if (!(file instanceof Blob) || file.type !== 'image/jpeg') return false;
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      const count = (marker: number): number =>
+        bytes.reduce((sum, byte, i) => sum + (byte === 0xff && bytes[i + 1] === marker ? 1 : 0), 0);
+      return count(0xc2) === 1 && count(0xda) < 10; // libjpeg-turbo writes ten
+    };
     window.createImageBitmap = async (...args: unknown[]): Promise<ImageBitmap> => {
       const number = arrived++;
+      decoding.early[number] = false;
+      decoding.early[number] = await lacksScans(args[0]);
       const bitmap = await (decode as (...rest: unknown[]) => Promise<ImageBitmap>)(...args);
       numbers.set(bitmap, number);
       if (decoding.unordered && number % 2 === 0) {
@@ -63,4 +74,10 @@ export const endUnordered = (page: Page): Promise<void> =>
     window.decoding.waiting.clear();
   });
 
-export const painted = (page: Page): Promise<number[]> => page.evaluate(() => [...window.decoding.painted]);
+/** The painted frames that are whole, by their number among those. */
+export const painted = (page: Page): Promise<number[]> =>
+  page.evaluate(() => {
+    const { painted, early } = window.decoding;
+    const whole = painted.filter((number) => !early[number]);
+    return whole.map((number) => number - early.slice(0, number).filter(Boolean).length);
+  });

@@ -1,5 +1,6 @@
 import { create } from '@bufbuild/protobuf';
-import { ViewFrameSchema, type ViewFrame } from '../generated/surfcast_pb';
+import { FileFormat, ViewFrameSchema, type ViewFrame } from '../generated/surfcast_pb';
+import { endedAt, showableBytes } from './jpeg_scans';
 import type { ArrivedFrame } from './painter';
 
 /**
@@ -9,21 +10,34 @@ import type { ArrivedFrame } from './painter';
 export class FrameAssembler {
   private pieces: ViewFrame[] = [];
   private bytes = 0;
+  private shown = 0; // bytes of the picture that frames which are not whole had
 
-  /** Adds a piece; returns the frame when the piece is its last. */
+  /** Adds a piece; returns the frame when the piece is its last, or when more of it can be shown before that. */
   take(piece: ViewFrame, bytes: number, arrived: number): ArrivedFrame | undefined {
     if (this.pieces[0] && this.pieces[0].frame !== piece.frame) this.drop();
     this.pieces.push(piece);
     this.bytes += bytes;
-    if (piece.more) return undefined;
-    const frame = { frame: joined(this.pieces), bytes: this.bytes, arrived };
+    if (piece.more) return this.early(arrived);
+    const frame = { frame: joined(this.pieces), bytes: this.bytes, arrived, whole: true };
     this.drop();
     return frame;
+  }
+
+  private early(arrived: number): ArrivedFrame | undefined {
+    const frame = joined(this.pieces);
+    const { picture } = frame;
+    if (picture?.format !== FileFormat.JPEG) return undefined;
+    const showable = showableBytes(picture.data);
+    if (showable <= this.shown) return undefined;
+    this.shown = showable;
+    const data = endedAt(picture.data, showable);
+    return { frame: { ...frame, picture: { ...picture, data } }, bytes: this.bytes, arrived, whole: false };
   }
 
   private drop(): void {
     this.pieces = [];
     this.bytes = 0;
+    this.shown = 0;
   }
 }
 

@@ -16,6 +16,8 @@ export interface ArrivedFrame {
   readonly frame: ViewFrame;
   readonly bytes: number;
   readonly arrived: number;
+  /** False: sharper pictures of the same frame follow. Its messages have been acknowledged. */
+  readonly whole: boolean;
   /** The request that it shows, if it is known. */
   readonly asked?: DrawPicture | undefined;
 }
@@ -48,6 +50,7 @@ export class Painter {
   private readonly context: CanvasRenderingContext2D;
   private ready: DecodedFrame | undefined;
   private newest = 0n;
+  private newestBytes = 0;
   private generation = 0;
   private readonly video = new PacketDecoder();
 
@@ -65,6 +68,7 @@ export class Painter {
   reset(): void {
     this.generation += 1;
     this.newest = 0n;
+    this.newestBytes = 0;
     this.video.reset();
     this.ready?.bitmap.close();
     this.ready = undefined;
@@ -84,12 +88,14 @@ export class Painter {
   }
 
   private queue(decoded: DecodedFrame): void {
-    if (decoded.frame.frame < this.newest) {
+    const { frame, bytes } = decoded;
+    if (frame.frame < this.newest || (frame.frame === this.newest && bytes < this.newestBytes)) {
       this.skip(decoded);
       return;
     }
     if (this.ready) this.skip(this.ready);
-    this.newest = decoded.frame.frame;
+    this.newest = frame.frame;
+    this.newestBytes = bytes;
     this.ready = decoded;
     this.events.ready();
   }

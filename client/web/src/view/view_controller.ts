@@ -75,7 +75,7 @@ export class ViewController {
     this.painter = new Painter(canvases.picture, {
       ready: () => this.tick(),
       painted: (frame) => this.painted(frame),
-      skipped: (frame) => this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived),
+      skipped: (frame) => this.skipped(frame),
       broken: (frame) => this.broken(frame),
     });
     void decodesVideo().then((decodes) => (this.video = decodes));
@@ -278,7 +278,9 @@ export class ViewController {
     store.wantedUpdate.value = 0n;
     this.sent = { ...request, moving: false };
     const events: ViewEvents = {
-      frame: (frame) => void this.painter.take(frame),
+      frame: (frame) => {
+        if (this.sharpens(frame)) void this.painter.take(frame);
+      },
       failed: (error) => {
         this.lost = { session, sent: this.sent };
         this.session = undefined;
@@ -294,9 +296,20 @@ export class ViewController {
     this.schedule();
   }
 
+  /** A frame that is not whole is sharper than one in motion, but not than another one at rest. */
+  private sharpens({ frame, whole }: ArrivedFrame): boolean {
+    const shown = store.shownFrame.peek();
+    return whole || !shown || shown.moving || shown.frame === frame.frame;
+  }
+
+  private skipped({ frame, arrived, whole }: ArrivedFrame): void {
+    if (whole) this.session?.acknowledge(frame.frame, performance.now() - arrived);
+  }
+
   /** A frame that cannot be decoded is not shown. If it is a packet of a video, the view goes on without one. */
-  private broken({ frame, arrived }: ArrivedFrame): void {
-    this.session?.acknowledge(frame.frame, performance.now() - arrived);
+  private broken(broken: ArrivedFrame): void {
+    const { frame } = broken;
+    this.skipped(broken);
     if (!frame.video || !this.video) return;
     this.video = false;
     this.endView();
@@ -353,8 +366,10 @@ export class ViewController {
   private painted(painted: PaintedFrame & DecodedFrame): void {
     const { frame } = painted;
     this.failures = 0;
-    this.unacknowledged = painted;
-    this.collector.painted(painted, this.sentAt.get(frame.update));
+    if (painted.whole) {
+      this.unacknowledged = painted;
+      this.collector.painted(painted, this.sentAt.get(frame.update));
+    }
     // Later frames of the same update are refinements, whose delay is not a latency.
     for (const update of this.sentAt.keys()) if (update <= frame.update) this.sentAt.delete(update);
     store.shownFrame.value = withoutData(painted);

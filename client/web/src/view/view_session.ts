@@ -67,8 +67,8 @@ export class ViewSession {
     if (answer.case === 'viewFrame') {
       const piece = answer.value;
       const frame = this.assembler.take(piece, bytes, performance.now());
+      if (piece.more) this.acknowledge(piece.frame, 0);
       if (frame) this.events.frame({ ...frame, asked: this.askedFor(frame.frame.update) });
-      else this.acknowledge(piece.frame, 0);
       return;
     }
     this.ended = true;
