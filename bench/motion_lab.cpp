@@ -1,8 +1,8 @@
-// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop] [rest]: plays camera paths over emulated links
-// to a server on this machine that serves these models, and compares what a client shows at each instant with the
-// picture of its camera at that instant: as clients without depth show it (the newest frame), warped by depth, and
-// warped from a video. `near`: from a quarter of the distance. `fps`: frames a second that the clients with depth ask
-// for. `link`: this one alone.
+// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop] [rest] [scales]: plays camera paths over
+// emulated links to a server on this machine that serves these models, and compares what a client shows at each instant
+// with the picture of its camera at that instant: as clients without depth show it (the newest frame), warped by depth,
+// and warped from a video. `near`: from a quarter of the distance. `fps`: frames a second that the clients with depth
+// ask for. `link`: this one alone.
 //
 // For each path and link a row of a Markdown table: frames a second, kilobytes a second, their width in pixels; then
 // over instants 50 ms apart, PSNR in dB over covered pixels (mean, and the value that one in ten is below) and the
@@ -19,6 +19,8 @@
 //
 // `rest`: instead, a movement ends after a second. PSNR of what is shown at instants after that, by a client that shows
 // whole frames only, and by one that shows early ones too (client::View::Frame::whole).
+//
+// `scales`: instead, PSNR of clients that warp with all pixels, three quarters and half of the width and height.
 
 #include <algorithm>
 #include <array>
@@ -192,7 +194,8 @@ bool counts(const picture::Image& image) {
   return covered > image.pixels.size() / 4 / 50;
 }
 
-Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path& path, const Truth& truth) {
+Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path& path, const Truth& truth,
+             double scale = 1) {
   Judged judged;
   const auto count = static_cast<double>(frames.size() - 1);
   for (const Arrived& frame : std::span(frames).subspan(1)) {
@@ -216,7 +219,7 @@ Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path
     const bool warps = !shown.mesh.empty();
     const warp::WarpFrame* below = newest > 0 && !rest.mesh.empty() ? &rest : nullptr;
     judged.figures.push_back(bench::compare(
-        warps ? warp::warp(shown, below, target, {0, 0, 0, 255}) : bench::unwarped(shown, target), truth[i]));
+        warps ? bench::warped_at(scale, shown, below, target) : bench::unwarped(shown, target), truth[i]));
   }
   return judged;
 }
@@ -408,6 +411,22 @@ class Lab {
     }
   }
 
+  void run_scales() {
+    std::printf("\n| %s | link | 1: frames/s, KB/s, width | dB, worst tenth / %% off | 0.75 | | 0.5 | |\n",
+                name_.c_str());
+    for (const Path& path : bench::paths()) {
+      const Truth truth = truth_of(path, 0, kSeconds, kEvery);
+      for (const Link& link : links_) {
+        const testing::LinkRelay relay(server_, shape_of(link));
+        std::printf("| %s | %.0f Mbit/s, %d ms |", path.name.c_str(), link.megabits, link.round_trip);
+        const auto frames = play({relay.port(), name_, begin_, {fps_, true}}, path, kSeconds, [](double) {});
+        for (const double scale : {1.0, 0.75, 0.5}) print(judge(frames, begin_, path, truth, scale));
+        std::printf("\n");
+        std::fflush(stdout);
+      }
+    }
+  }
+
   void run_rest() {
     std::printf("\n| %s | link | KB |", name_.c_str());
     for (const double seconds : kRestedFor) std::printf(" %.1f s |", seconds);
@@ -502,13 +521,15 @@ class Lab {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop] [rest]\n");
+    std::fprintf(stderr,
+                 "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop] [rest] [scales]\n");
     return 2;
   }
   bool near = false;
   bool drop = false;
   bool steps = false;
   bool rest = false;
+  bool scales = false;
   double fps = 0;
   std::vector<Link> links{{1000, 0}, {20, 50}, {20, 150}, {4, 150}, {20, 300}};
   std::vector<std::string> models;
@@ -521,6 +542,8 @@ int main(int argc, char** argv) {
       steps = true;
     } else if (word == "rest") {
       rest = true;
+    } else if (word == "scales") {
+      scales = true;
     } else if (word.starts_with("fps=")) {
       fps = std::atof(word.c_str() + 4);
     } else if (word.starts_with("link=")) {
@@ -531,7 +554,7 @@ int main(int argc, char** argv) {
   }
   for (const std::string& model : models) {
     Lab lab(static_cast<uint16_t>(std::atoi(argv[1])), model, near, fps, links);
-    rest ? lab.run_rest() : drop ? lab.run_drop() : steps ? lab.run_steps() : lab.run();
+    scales ? lab.run_scales() : rest ? lab.run_rest() : drop ? lab.run_drop() : steps ? lab.run_steps() : lab.run();
   }
   return 0;
 }

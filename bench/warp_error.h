@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "geometry/camera.h"
 #include "picture/picture.h"
@@ -54,6 +57,17 @@ inline warp::Pixels unwarped(const warp::WarpFrame& frame, const geometry::Camer
   same.height = target.height;
   same.eta *= scale;
   return warp::warp(flat, nullptr, same, {0, 0, 0, 255});
+}
+
+/// A picture of `target` as a client shows it that warps with fewer pixels. `scale`: of width and height.
+inline warp::Pixels warped_at(double scale, const warp::WarpFrame& frame, const warp::WarpFrame* below,
+                              const geometry::CameraFrame& target) {
+  geometry::CameraFrame small = target;
+  small.width = static_cast<int>(std::lround(scale * target.width));
+  small.height = static_cast<int>(std::lround(scale * target.height));
+  small.eta *= static_cast<double>(small.height) / target.height;
+  warp::Pixels pixels = warp::warp(frame, below, small, {0, 0, 0, 255});
+  return scale == 1 ? pixels : unwarped({std::move(pixels), small, {}, false}, target);
 }
 
 }  // namespace surfcast::bench

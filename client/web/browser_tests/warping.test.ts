@@ -94,6 +94,35 @@ describe('a drag', () => {
 });
 
 describe('a warped picture', () => {
+  it('has fewer pixels where warps are slow, and all of them once it stands still', async () => {
+    const wire = await openYard();
+    await yard.page.evaluate(() => {
+      const read = WebGL2RenderingContext.prototype.readPixels;
+      WebGL2RenderingContext.prototype.readPixels = function (this: WebGL2RenderingContext, ...args: unknown[]) {
+        const until = performance.now() + 50;
+        while (performance.now() < until);
+        (read as (...rest: unknown[]) => void).apply(this, args);
+      } as typeof read;
+    });
+    const width = (name: string): Promise<number> =>
+      yard.page.evaluate((name) => document.querySelector<HTMLCanvasElement>(`canvas.${name}`)!.width, name);
+    wire.holdFrames();
+    const whole = await width('picture');
+    const half = Math.round(whole / 2);
+    const from = await press(yard.page);
+    let smaller = false;
+    for (let i = 1; i <= 300 && !smaller; ++i) {
+      await yard.page.mouse.move(from.x + 30 * Math.sin(i / 10), from.y + i / 10);
+      smaller = (await width('warped')) === half;
+    }
+    expect(smaller).toBe(true);
+    await expect.poll(() => width('warped')).toBe(whole);
+    expect(await warping.isWarped(yard.page)).toBe(true);
+    await yard.page.mouse.up();
+    wire.releaseFrames();
+    await look.sharp(yard.page);
+  });
+
   it('acknowledges each message of a frame once', async () => {
     const wire = await openYard();
     const from = await press(yard.page);

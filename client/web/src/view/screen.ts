@@ -4,6 +4,7 @@ import type { Vector } from '../camera/vector';
 import { cameraFrom, type Size } from '../protocol/pictures';
 import { sameView, shownAs, type LayerFrame } from '../warp/layers';
 import { WarpPainter, type WarpSource } from '../warp/warp_painter';
+import { WarpResolution } from '../warp/warp_resolution';
 import type { DecodedFrame } from './painter';
 
 /** A painted frame, and what it is warped from, if it has a depth. */
@@ -16,7 +17,10 @@ interface Drawn {
   readonly below: Shot;
   readonly above: Shot | undefined;
   readonly camera: Camera;
+  readonly scale: number; // of its width and height, of those of the view
 }
+
+const stillAfter = 100; // ms without another picture
 
 /**
  * The canvas over the painted frame. It shows the frame, and under it the last one at rest, as the present camera sees
@@ -27,11 +31,14 @@ export class Screen {
   private newest: Shot | undefined;
   private rest: Shot | undefined;
   private drawn: Drawn | undefined;
+  private readonly resolution = new WarpResolution();
+  private still = false; // what is drawn has been shown for a while
+  private stillTimer: ReturnType<typeof setTimeout> | undefined;
 
   /** `changed`: `show` is to be called again. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    changed: () => void,
+    private readonly changed: () => void,
   ) {
     canvas.hidden = true;
     this.painter = WarpPainter.on(canvas, () => {
@@ -77,11 +84,31 @@ export class Screen {
     if (!below.source || !this.painter || this.painter.lost) return false;
     const { drawn } = this;
     this.canvas.hidden = false;
-    if (drawn?.below === below && drawn.above === above && sameView(drawn.camera, camera, sky)) return true;
-    const { width, height } = below.view;
+    const same = drawn?.below === below && drawn.above === above && sameView(drawn.camera, camera, sky);
+    if (same && (drawn.scale === 1 || !this.still)) return true;
+    const scale = same ? 1 : this.resolution.scale;
+    this.drawn = { below, above, camera, scale };
+    const width = Math.round(scale * below.view.width);
+    const height = Math.round(scale * below.view.height);
+    const begun = performance.now();
     this.painter.draw(below.source, above?.source, projectionOf(camera, sky, width, height));
-    this.drawn = { below, above, camera };
+    if (!same && this.resolution.measuresNext()) {
+      this.painter.finish();
+      this.resolution.record(performance.now() - begun);
+    }
+    this.awaitStill();
     return true;
+  }
+
+  /** Where nothing moves any more, what was drawn with fewer pixels is drawn with all. */
+  private awaitStill(): void {
+    clearTimeout(this.stillTimer);
+    this.still = false;
+    if (this.drawn?.scale === 1) return;
+    this.stillTimer = setTimeout(() => {
+      this.still = true;
+      this.changed();
+    }, stillAfter);
   }
 
   private hide(): void {

@@ -132,6 +132,13 @@ export class WarpPainter {
     else this.drawBelow(this.programs.alone, below, target, nearest);
   }
 
+  /** Waits until what was drawn is there. */
+  finish(): void {
+    const { gl } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
   private clear({ red, green, blue }: Rgb, alpha: number): void {
     const { gl } = this;
     gl.clearColor(red / 255, green / 255, blue / 255, alpha);
