@@ -54,4 +54,15 @@ inline double drawing_ms(const picture::Frame& frame) {
   return sum;
 }
 
+/// The picture of a view at rest.
+inline picture::PictureRequest request_at_rest(const geometry::Camera& camera, int width, int height) {
+  picture::PictureRequest request;
+  request.camera = camera;
+  request.width = width;
+  request.height = height;
+  request.spacing = 1;
+  request.silhouettes = true;
+  return request;
+}
+
 }  // namespace surfcast::bench

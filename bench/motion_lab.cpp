@@ -27,7 +27,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <glm/common.hpp>
 #include <map>
 #include <memory>
@@ -40,8 +39,8 @@
 
 #include "bench_support.h"
 #include "camera_paths.h"
-#include "client/view.h"
 #include "client/window/video_decoder.h"
+#include "motion_player.h"
 #include "support/link_relay.h"
 #include "warp/warp.h"
 #include "warp_error.h"
@@ -49,16 +48,17 @@
 namespace {
 
 using namespace surfcast;
+using bench::Arrived;
+using bench::decoded;
+using bench::kHeight;
+using bench::kWidth;
 using bench::Path;
+using bench::play;
 using bench::value_or_exit;
 using geometry::Camera;
-using Clock = client::View::Clock;
 
-constexpr int kWidth = 1280;
-constexpr int kHeight = 720;
 constexpr double kSeconds = 2.5;  // of a movement
 constexpr double kEvery = 0.05;   // between two instants that are judged
-constexpr double kUpdateEvery = 0.016;
 constexpr double kDropEvery = 4;
 constexpr double kDropPart = 0.1;
 constexpr double kDecode = 0.005;  // from the arrival of a frame until it can be shown
@@ -67,114 +67,6 @@ struct Link {
   double megabits = 0;  ///< a second
   int round_trip = 0;   ///< ms
 };
-
-struct Arrived {
-  double seconds = 0;  ///< since the movement began
-  wire::ViewFrame frame;
-  uint64_t bytes = 0;
-  bool whole = true;
-};
-
-wire::Camera to_message(const Camera& camera) {
-  const auto set = [](const glm::dvec3& from, wire::Vector3& to) {
-    to.set_x(from.x);
-    to.set_y(from.y);
-    to.set_z(from.z);
-  };
-  wire::Camera message;
-  set(camera.position, *message.mutable_position());
-  set(camera.focal_point, *message.mutable_focal_point());
-  set(camera.view_up, *message.mutable_view_up());
-  message.set_view_angle(camera.view_angle);
-  return message;
-}
-
-Camera from_message(const wire::Camera& camera) {
-  const auto vector = [](const wire::Vector3& v) { return glm::dvec3(v.x(), v.y(), v.z()); };
-  return {vector(camera.position()), vector(camera.focal_point()), vector(camera.view_up()), camera.view_angle()};
-}
-
-wire::DrawPicture request_of(const std::string& model, const Camera& camera) {
-  wire::DrawPicture picture;
-  picture.set_model(model);
-  picture.mutable_resolution()->set_width(kWidth);
-  picture.mutable_resolution()->set_height(kHeight);
-  picture.set_spacing(1);
-  *picture.mutable_camera() = to_message(camera);
-  return picture;
-}
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// A client, and what it plays.
-struct Player {
-  uint16_t port = 0;
-  std::string model;
-  Camera begin;
-  client::ViewWishes wishes;
-};
-
-Arrived arrived_after(Clock::time_point start, client::View::Frame frame) {
-  const double seconds = std::chrono::duration<double>(frame.arrived - start).count();
-  return {seconds, std::move(frame.frame), frame.bytes, frame.whole};
-}
-
-/// The frames of a movement, and before them the one at rest from which it begins; then those of a rest of so many
-/// seconds. `tick` gets the seconds since.
-std::vector<Arrived> play(const Player& player, const Path& path, double seconds,
-                          const std::function<void(double)>& tick, double rest = 0) {
-  client::ServerConnection connection =
-      value_or_exit(client::ServerConnection::open({.host = "127.0.0.1", .port = player.port}, {}));
-  client::View view =
-      value_or_exit(client::View::open(connection, request_of(player.model, player.begin), player.wishes));
-  std::vector<Arrived> frames(1);
-  while (!frames.front().frame.picture().converged()) {
-    auto frame = value_or_exit(view.next_until(Clock::now() + std::chrono::seconds(60)));
-    if (!frame || !view.painted(*frame)) std::exit(1);
-    frames.front().frame = frame->frame;
-  }
-  const Clock::time_point start = Clock::now();
-  for (double next = 0; seconds_since(start) < seconds;) {
-    const double now = seconds_since(start);
-    tick(now);
-    if (now >= next) {
-      value_or_exit(view.show(request_of(player.model, path.at(player.begin, now)), /*moving=*/true));
-      next = std::max(next + kUpdateEvery, now);
-    }
-    const auto until = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(next));
-    const auto frame = value_or_exit(view.next_until(until));
-    if (!frame) continue;
-    if (!view.painted(*frame)) std::exit(1);
-    frames.push_back(arrived_after(start, *frame));
-  }
-  if (rest <= 0) return frames;
-  value_or_exit(view.show(request_of(player.model, path.at(player.begin, seconds)), /*moving=*/false));
-  const auto end = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds + rest));
-  while (const auto frame = value_or_exit(view.next_until(end))) {
-    if (!view.painted(*frame)) std::exit(1);
-    frames.push_back(arrived_after(start, *frame));
-  }
-  return frames;
-}
-
-/// A frame as a client has it.
-warp::WarpFrame decoded(const wire::ViewFrame& frame, window::VideoDecoder& video) {
-  window::PixelImage image = value_or_exit(window::decode_frame(frame, video));
-  for (size_t i = 0; i < image.pixels.size(); i += 4) std::swap(image.pixels[i], image.pixels[i + 2]);
-  const Camera camera = from_message(frame.picture().camera());
-  warp::WarpFrame result{{image.width, image.height, std::move(image.pixels)},
-                         value_or_exit(geometry::make_camera_frame(camera, image.width, image.height)),
-                         {},
-                         false};
-  if (frame.has_depth()) {
-    const warp::DepthPlane depth = value_or_exit(warp::decode_depth(frame.depth(), image.width, image.height));
-    result.mesh = warp::make_warp_mesh(depth, image.width, image.height);
-    result.seen_through = depth.seen_through;
-  }
-  return result;
-}
 
 /// Pictures of the instants of a path.
 using Truth = std::vector<picture::Image>;
@@ -383,7 +275,7 @@ class Lab {
     if (near) begin_.position = glm::mix(begin_.focal_point, begin_.position, 0.25);
   }
 
-  void run() {
+  void run_links() {
     std::printf(
         "\n| %s | link | newest frame: frames/s, KB/s, width | dB, worst tenth / %% off | warped: frames/s, KB/s, "
         "width | "
@@ -493,13 +385,7 @@ class Lab {
   }
 
   [[nodiscard]] picture::Image truth_at(const Camera& camera) const {
-    picture::PictureRequest request;
-    request.camera = camera;
-    request.width = kWidth;
-    request.height = kHeight;
-    request.spacing = 1;
-    request.silhouettes = true;
-    return bench::draw_or_exit(*renderer_, model_, request).image;
+    return bench::draw_or_exit(*renderer_, model_, bench::request_at_rest(camera, kWidth, kHeight)).image;
   }
 
   [[nodiscard]] Truth truth_of(const Path& path, double from, double to, double every) const {
@@ -525,25 +411,18 @@ int main(int argc, char** argv) {
                  "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop] [rest] [scales]\n");
     return 2;
   }
+  static const std::map<std::string, void (Lab::*)()> kModes{
+      {"steps", &Lab::run_steps}, {"drop", &Lab::run_drop}, {"rest", &Lab::run_rest}, {"scales", &Lab::run_scales}};
+  void (Lab::*run)() = &Lab::run_links;
   bool near = false;
-  bool drop = false;
-  bool steps = false;
-  bool rest = false;
-  bool scales = false;
   double fps = 0;
   std::vector<Link> links{{1000, 0}, {20, 50}, {20, 150}, {4, 150}, {20, 300}};
   std::vector<std::string> models;
   for (const std::string& word : std::vector<std::string>(argv + 2, argv + argc)) {
     if (word == "near") {
       near = true;
-    } else if (word == "drop") {
-      drop = true;
-    } else if (word == "steps") {
-      steps = true;
-    } else if (word == "rest") {
-      rest = true;
-    } else if (word == "scales") {
-      scales = true;
+    } else if (const auto mode = kModes.find(word); mode != kModes.end()) {
+      run = mode->second;
     } else if (word.starts_with("fps=")) {
       fps = std::atof(word.c_str() + 4);
     } else if (word.starts_with("link=")) {
@@ -554,7 +433,7 @@ int main(int argc, char** argv) {
   }
   for (const std::string& model : models) {
     Lab lab(static_cast<uint16_t>(std::atoi(argv[1])), model, near, fps, links);
-    scales ? lab.run_scales() : rest ? lab.run_rest() : drop ? lab.run_drop() : steps ? lab.run_steps() : lab.run();
+    (lab.*run)();
   }
   return 0;
 }

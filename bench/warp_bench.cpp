@@ -61,12 +61,7 @@ class Subject {
   [[nodiscard]] const Camera& first() const { return first_; }
 
   [[nodiscard]] picture::Frame rest(const Camera& camera) const {
-    picture::PictureRequest request;
-    request.camera = camera;
-    request.width = kWidth;
-    request.height = kHeight;
-    request.spacing = 1;
-    request.silhouettes = true;
+    picture::PictureRequest request = bench::request_at_rest(camera, kWidth, kHeight);
     request.opacity = opacity_;
     request.depth_texels = kTexelsAtRest;
     return bench::draw_or_exit(*renderer_, model_, request);

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { WarpResolution } from '../src/warp/warp_resolution';
+import { WarpResolution } from '../src/view/warp_resolution';
 
 /** After so many warps on a device that takes these milliseconds for a warp with all pixels. */
 function settled(milliseconds: (warp: number) => number, warps = 60, resolution = new WarpResolution()): WarpResolution {

@@ -110,8 +110,9 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t frame, Vie
   if (picture::has_budget(request)) set_interim_spacing(request);
   job.format = picture::FileFormat::kJpeg;
   job.quality = kRefinedQuality;
-  // A client that shows what has come of it sees first what changes most.
-  if (options_.depth) job.order = picture::JpegOrder::kScans;
+  // At rest, a client that shows what has come of a file sees first what changes most.
+  const bool shown_early = options_.depth && kind != FrameKind::kMotion;
+  job.order = shown_early ? picture::JpegOrder::kScans : picture::JpegOrder::kRows;
   if (kind == FrameKind::kTakeover) {
     request.max_missing_blocks = 0;
     job.keep_frame = may_be_kept(newest_.picture);
@@ -143,7 +144,6 @@ void ViewSession::make_motion_job(uint64_t frame, ViewTime now, service::Picture
   if (request.edition != edition_) request.max_missing_blocks = 0;
   job.priority = service::Priority::kMotion;
   job.quality = quality.jpeg_quality;
-  job.order = picture::JpegOrder::kRows;
   job.supersedes = frames_.at(frame).supersedes;
 }
 

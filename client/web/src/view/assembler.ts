@@ -24,9 +24,9 @@ export class FrameAssembler {
   }
 
   private early(arrived: number): ArrivedFrame | undefined {
+    if (this.pieces[0]?.picture?.format !== FileFormat.JPEG) return undefined; // a large file is not joined at each piece
     const frame = joined(this.pieces);
-    const { picture } = frame;
-    if (picture?.format !== FileFormat.JPEG) return undefined;
+    const picture = frame.picture!;
     const showable = showableBytes(picture.data);
     if (showable <= this.shown) return undefined;
     this.shown = showable;

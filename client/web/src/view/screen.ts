@@ -4,8 +4,8 @@ import type { Vector } from '../camera/vector';
 import { cameraFrom, type Size } from '../protocol/pictures';
 import { sameView, shownAs, type LayerFrame } from '../warp/layers';
 import { WarpPainter, type WarpSource } from '../warp/warp_painter';
-import { WarpResolution } from '../warp/warp_resolution';
 import type { DecodedFrame } from './painter';
+import { WarpResolution } from './warp_resolution';
 
 /** A painted frame, and what it is warped from, if it has a depth. */
 interface Shot extends LayerFrame {

@@ -1,14 +1,11 @@
+import { median } from './figures';
+
 const scales = [1, 0.75, 0.5]; // factors on width and height
 const inTime = 12; // ms, of the 16.7 between two pictures of a display
 const easily = 7; // ms; what takes no longer is no reason for a smaller picture
 const toLower = 3; // samples
 const toRaise = 8;
 const measuredEvery = 4; // warps: to measure one is to wait for it
-
-function median(values: readonly number[]): number {
-  const sorted = [...values].sort((a, b) => a - b);
-  return sorted[sorted.length >> 1] ?? 0;
-}
 
 /**
  * Chooses the resolution of warps in motion, so that they are drawn in time for the display where graphics are slow, or
@@ -31,7 +28,7 @@ export class WarpResolution {
   /** The milliseconds of a warp that was drawn at the present scale. */
   record(milliseconds: number): void {
     this.samples.push(milliseconds);
-    if (this.samples.length >= toLower && median(this.samples.slice(-toLower)) > inTime) {
+    if (this.samples.length >= toLower && this.expected(toLower, this.scale) > inTime) {
       const fits = scales.findIndex((scale, i) => i > this.at && this.expected(toLower, scale) <= inTime);
       this.goTo(fits < 0 ? scales.length - 1 : fits);
     } else if (this.samples.length >= toRaise) {
@@ -41,9 +38,9 @@ export class WarpResolution {
     }
   }
 
-  /** Milliseconds of a warp at another scale, by the last samples. */
+  /** Milliseconds of a warp at a scale, by the last samples, of which there must be some. */
   private expected(samples: number, scale: number): number {
-    return median(this.samples.slice(-samples)) * (scale / this.scale) ** 2;
+    return median(this.samples.slice(-samples))! * (scale / this.scale) ** 2;
   }
 
   private goTo(at: number): void {
