@@ -136,7 +136,8 @@ Result<Course> Course::of(const std::vector<glm::dvec3>& line, bool z_up) {
     course.parts_.push_back({from, step / length, length, course.length_});
     course.length_ += length;
   }
-  if (course.parts_.empty()) return fail(ErrorKind::kInvalidInput, "line: two points of different courses are needed");
+  if (course.parts_.empty())
+    return fail(ErrorKind::kInvalidInput, "line: two points with different horizontal positions are needed");
   return course;
 }
 

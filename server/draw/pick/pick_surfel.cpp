@@ -53,8 +53,8 @@ double entry_depth(const geometry::Box& box, double margin, const glm::dvec3& ey
 }
 
 Error too_wide(size_t most_blocks) {
-  return {ErrorKind::kLimit, "pixel: it is so wide that more than " + std::to_string(most_blocks) +
-                                 " blocks of the model may show in it; pick in a picture of more pixels"};
+  return {ErrorKind::kLimit, "pixel: more than " + std::to_string(most_blocks) +
+                                 " blocks of the model may show in it; ask for a picture with more pixels"};
 }
 
 class Picker {

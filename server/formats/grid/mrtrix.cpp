@@ -168,7 +168,8 @@ Status take_components(const ImageAxes& axes, StoredGrid& grid) {
   const bool last = std::none_of(axes.layout.begin(), axes.layout.begin() + 3,
                                  [rank](const StoredAxis& axis) { return axis.rank > rank; });
   if ((!first && !last) || axes.layout[3].backward) {
-    return fail(ErrorKind::kUnsupported, "MRtrix: components between axes of space; mrconvert -strides 1,2,3,4 helps");
+    return fail(ErrorKind::kUnsupported,
+                "MRtrix: the axis of components lies between axes of space; convert with mrconvert -strides 1,2,3,4");
   }
   grid.header.kind = SampleKind::kSymmetricTensorMrtrix;
   grid.planar = !first;

@@ -185,7 +185,8 @@ Result<std::vector<size_t>> domain_of(const NrrdAxes& axes, StoredGrid& grid) {
     if (*kind == SampleKind::kScalar) continue;
     const bool last = axis + 1 == axes.sizes.size();
     if (grid.header.kind != SampleKind::kScalar || (axis > 0 && !last)) {
-      return fail(ErrorKind::kUnsupported, "NRRD: components between axes of space; put them first or last");
+      return fail(ErrorKind::kUnsupported,
+                  "NRRD: the axis of components lies between axes of space; it must be the first or the last");
     }
     grid.header.kind = *kind;
     grid.planar = axis > 0;
