@@ -95,16 +95,11 @@ warp::WarpFrame decoded(const wire::ViewFrame& frame, window::VideoDecoder& vide
   window::PixelImage image = value_or_exit(window::decode_frame(frame, video));
   for (size_t i = 0; i < image.pixels.size(); i += 4) std::swap(image.pixels[i], image.pixels[i + 2]);
   const Camera camera = from_message(frame.picture().camera());
-  warp::WarpFrame result{{image.width, image.height, std::move(image.pixels)},
-                         value_or_exit(geometry::make_camera_frame(camera, image.width, image.height)),
-                         {},
-                         false};
-  if (frame.has_depth()) {
-    const warp::DepthPlane depth = value_or_exit(warp::decode_depth(frame.depth(), image.width, image.height));
-    result.mesh = warp::make_warp_mesh(depth, image.width, image.height);
-    result.seen_through = depth.seen_through;
-  }
-  return result;
+  const auto seen_by = value_or_exit(geometry::make_camera_frame(camera, image.width, image.height));
+  warp::Pixels pixels{image.width, image.height, std::move(image.pixels)};
+  if (!frame.has_depth()) return {std::move(pixels), seen_by, {}, {}, false};
+  const warp::DepthPlane depth = value_or_exit(warp::decode_depth(frame.depth(), image.width, image.height));
+  return warp::make_warp_frame(std::move(pixels), seen_by, depth);
 }
 
 }  // namespace surfcast::bench

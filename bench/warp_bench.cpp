@@ -96,10 +96,9 @@ struct Warpable {
 Warpable warpable(const picture::Frame& drawn) {
   const int width = drawn.image.width;
   const int height = drawn.image.height;
-  Warpable result{
-      {pixels_of(drawn.image), value_or_exit(geometry::make_camera_frame(drawn.camera, width, height)), {}, false}};
+  const geometry::CameraFrame camera = value_or_exit(geometry::make_camera_frame(drawn.camera, width, height));
   const auto encoded = encode::encode_depth(drawn.depth, drawn.image.width < kWidth ? 3000 : 6000);
-  if (!encoded) return result;
+  if (!encoded) return {{pixels_of(drawn.image), camera, {}, {}, false}, 0};
   wire::DepthPlane plane;
   plane.set_width(static_cast<uint32_t>(encoded->width));
   plane.set_height(static_cast<uint32_t>(encoded->height));
@@ -107,11 +106,9 @@ Warpable warpable(const picture::Frame& drawn) {
   plane.set_first(encoded->first);
   plane.set_last(encoded->last);
   plane.set_codes(encoded->codes.data(), encoded->codes.size());
-  result.depth_bytes = encoded->codes.size();
   plane.set_seen_through(encoded->seen_through);
-  result.frame.mesh = warp::make_warp_mesh(value_or_exit(warp::decode_depth(plane, width, height)), width, height);
-  result.frame.seen_through = encoded->seen_through;
-  return result;
+  const warp::DepthPlane depth = value_or_exit(warp::decode_depth(plane, width, height));
+  return {warp::make_warp_frame(pixels_of(drawn.image), camera, depth), encoded->codes.size()};
 }
 
 void print(const Figures& figures) {
@@ -128,8 +125,8 @@ Camera begin_of(const Subject& subject, bool near) {
 void measure(const std::string& name, const Subject& subject, bool near) {
   const Camera begin = begin_of(subject, near);
   std::printf(
-      "\n| %s | present motion frame | stale rest | stale motion | rest warped | motion warped | "
-      "rest over stale motion | rest over present motion | processor ms |\n|---|---|---|---|---|---|---|---|\n",
+      "\n| %s | present motion frame | stale rest | rest warped | rest over stale motion | "
+      "rest over motion 30 ms off | rest over present motion | processor ms |\n|---|---|---|---|---|---|---|---|\n",
       name.c_str());
   const Warpable rest = warpable(subject.rest(begin));
   const Warpable first_motion = warpable(subject.motion(begin));
@@ -155,12 +152,14 @@ void measure(const std::string& name, const Subject& subject, bool near) {
       print(compare(both, truth.image));
       std::printf(" %.0f |\n", milliseconds);
       std::fflush(stdout);
-      if (delay == 0.1) {
-        const std::string prefix = name.substr(name.find_last_of('/') + 1) + "_" + path.name.substr(0, 4);
+      if (delay >= 0.1) {
+        const std::string prefix = name.substr(name.find_last_of('/') + 1) + "_" +
+                                   path.name.substr(0, path.name.find(',')) + (delay > 0.1 ? "_late" : "");
         keep(prefix + "_truth", pixels_of(truth.image));
         keep(prefix + "_motion", unwarped(present.frame, target));
         keep(prefix + "_rest", warped(rest, nullptr));
         keep(prefix + "_both", both);
+        keep(prefix + "_stale", warped(first_motion, &rest));
       }
     }
   }

@@ -49,8 +49,7 @@ inline warp::Pixels pixels_of(const picture::Image& image) {
 /// A picture of `target` made of one frame, scaled as a client without depth does it.
 inline warp::Pixels unwarped(const warp::WarpFrame& frame, const geometry::CameraFrame& target) {
   const warp::DepthPlane none{1, 1, std::max(frame.camera.width, frame.camera.height), {1.0F}};
-  const warp::WarpFrame flat{frame.pixels, frame.camera,
-                             warp::make_warp_mesh(none, frame.camera.width, frame.camera.height), false};
+  const warp::WarpFrame flat = warp::make_warp_frame(frame.pixels, frame.camera, none);
   geometry::CameraFrame same = frame.camera;
   const double scale = static_cast<double>(target.height) / same.height;
   same.width = target.width;
@@ -67,7 +66,7 @@ inline warp::Pixels warped_at(double scale, const warp::WarpFrame& frame, const 
   small.height = static_cast<int>(std::lround(scale * target.height));
   small.eta *= static_cast<double>(small.height) / target.height;
   warp::Pixels pixels = warp::warp(frame, below, small, {0, 0, 0, 255});
-  return scale == 1 ? pixels : unwarped({std::move(pixels), small, {}, false}, target);
+  return scale == 1 ? pixels : unwarped({std::move(pixels), small, {}, {}, false}, target);
 }
 
 }  // namespace surfcast::bench

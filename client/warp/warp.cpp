@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "warp/fill_colors.h"
+
 namespace surfcast::warp {
 namespace {
 
@@ -75,15 +77,6 @@ struct Target {
   std::vector<float> density;  ///< pixels of the frame in a pixel, along one direction; -1: made up
 };
 
-/// The four bytes of a pixel.
-using Color = uint32_t;
-
-Color color_at(const uint8_t* pixel) {
-  Color color = 0;
-  std::memcpy(&color, pixel, sizeof color);
-  return color;
-}
-
 /// Between two colours, by 256ths. Two channels at a time, which keep out of each other's way.
 Color mixed(Color a, Color b, uint32_t part) {
   constexpr uint32_t kEven = 0x00ff00ff;
@@ -133,7 +126,8 @@ struct ScreenTriangle {
   Plane pixel_x;               ///< of the frame
   Plane pixel_y;
   Plane front;
-  int left = 0;  ///< pixels whose centres may be inside
+  std::array<Plane, 3> continued;  ///< channels of what goes on unseen
+  int left = 0;                    ///< pixels whose centres may be inside
   int right = 0;
   int top = 0;
   int bottom = 0;
@@ -158,8 +152,8 @@ Plane part_of(const glm::dvec2& one, const glm::dvec2& other, double area) {
 }
 
 /// None where it is not seen: behind the eye, from the side, or outside the picture.
-std::optional<ScreenTriangle> screen_triangle(const MeshTriangle& mesh, const Projection& projection, int width,
-                                              int height) {
+std::optional<ScreenTriangle> screen_triangle(const MeshTriangle& mesh, const std::vector<Color>& fill_colors,
+                                              const Projection& projection, int width, int height) {
   const std::array<Projected, 3> corners{projection(mesh.corners[0]), projection(mesh.corners[1]),
                                          projection(mesh.corners[2])};
   std::array<glm::dvec2, 3> screen;
@@ -191,6 +185,10 @@ std::optional<ScreenTriangle> screen_triangle(const MeshTriangle& mesh, const Pr
     triangle.pixel_x.add(part, share * corner.pixel.x);
     triangle.pixel_y.add(part, share * corner.pixel.y);
     triangle.front.add(part, share * corner.front);
+    if (mesh.sheet != Sheet::kSurface && mesh.sheet != Sheet::kNear) {
+      const Color color = fill_colors[mesh.corners.at(i).continued];
+      for (size_t c = 0; c < 3; ++c) triangle.continued.at(c).add(part, share * channel(color, static_cast<int>(c)));
+    }
     farthest = std::min(farthest, share * corner.inverse);
   }
   triangle.farthest = static_cast<float>(farthest);
@@ -202,9 +200,10 @@ std::vector<ScreenTriangle> screen_triangles(const WarpFrame& frame, const geome
   std::vector<ScreenTriangle> triangles;
   triangles.reserve(frame.mesh.size());
   for (const MeshTriangle& mesh : frame.mesh) {
-    auto triangle = screen_triangle(mesh, projection, camera.width, camera.height);
+    auto triangle = screen_triangle(mesh, frame.fill_colors, projection, camera.width, camera.height);
     if (!triangle) continue;
-    if (mesh.sheet != Sheet::kSurface) triangle->far = sample(frame.pixels, mesh.far.x, mesh.far.y);
+    if (mesh.sheet == Sheet::kNear || mesh.sheet == Sheet::kFar)
+      triangle->far = sample(frame.pixels, mesh.far.x, mesh.far.y);
     triangles.push_back(*triangle);
   }
   return triangles;
@@ -217,8 +216,8 @@ void put(Pixels& picture, size_t at, Color color) {
 /// Squared, of three channels.
 int distance(Color a, Color b) {
   int sum = 0;
-  for (const int shift : {0, 8, 16}) {
-    const int step = static_cast<int>(a >> shift & 0xff) - static_cast<int>(b >> shift & 0xff);
+  for (const int i : {0, 1, 2}) {
+    const int step = channel(a, i) - channel(b, i);
     sum += step * step;
   }
   return sum;
@@ -235,18 +234,30 @@ struct Place {
   size_t at = 0;  ///< pixel of the target
   float x = 0;    ///< pixel of the frame
   float y = 0;
-  float inverse = 0;  ///< in the target
-  bool front = false;
+  float inverse = 0;    ///< in the target
+  float front = 0;      ///< as in MeshVertex
+  Color continued = 0;  ///< what goes on unseen
 };
+
+/// Beyond the border of a frame: its reflection, which is lost in the mean colour of the border.
+Color surroundings(const Pixels& pixels, const Place& place) {
+  const auto reflected = [](float at, int size) {
+    return at < 0 ? -at : std::min(at, 2 * static_cast<float>(size) - at);
+  };
+  const Color reflection = sample(pixels, reflected(place.x, pixels.width), reflected(place.y, pixels.height));
+  const float share = place.front > 0 ? std::min(place.front, 1.0F) : 0;  // also where it is NaN
+  return mixed(place.continued, reflection, static_cast<uint32_t>(256 * share * share));
+}
 
 Shown shown(const Pixels& pixels, const ScreenTriangle& triangle, const Place& place) {
   const Sheet sheet = triangle.mesh->sheet;
-  if (sheet == Sheet::kFill) return {triangle.far, false};
+  if (sheet == Sheet::kFill) return {place.continued, false};
+  if (sheet == Sheet::kSurroundings) return {surroundings(pixels, place), false};
   const Color color = sample(pixels, place.x, place.y);
   if (sheet == Sheet::kSurface) return {color, true};
-  const bool in_front = place.front && distance(color, triangle.far) >= kSameColor;
+  const bool in_front = place.front >= 0.5F && distance(color, triangle.far) >= kSameColor;
   if (sheet == Sheet::kNear) return {color, in_front};
-  return in_front ? Shown{triangle.far, false} : Shown{color, true};
+  return in_front ? Shown{place.continued, false} : Shown{color, true};
 }
 
 /// Rows of the target that are drawn together.
@@ -272,12 +283,24 @@ std::pair<int, int> columns_inside(const ScreenTriangle& triangle, double y) {
   return {static_cast<int>(std::ceil(first - 0.5)), static_cast<int>(std::floor(last - 0.5)) + 1};
 }
 
+Color color_of(const std::array<Plane, 3>& channels, double x, double y, double w) {
+  Color color = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const double level = channels.at(i).at(x, y) / w;
+    // (At extreme depths it may be NaN.)
+    color |= static_cast<Color>(level > 0 ? std::lround(std::min(level, 255.0)) : 0) << (8 * i);
+  }
+  return color;
+}
+
 /// Calls `draw(place)` for each pixel of the band that the triangle covers, if it is nearer than what `inverse` has
 /// there.
 template <typename Draw>
 void for_each_place(const ScreenTriangle& triangle, const Band& band, int width, const std::vector<float>& inverse,
                     const Draw& draw) {
-  const bool fills = triangle.mesh->sheet == Sheet::kFill;
+  const Sheet sheet = triangle.mesh->sheet;
+  const bool made_up = sheet == Sheet::kFill || sheet == Sheet::kSurroundings;
+  const bool continued = made_up || sheet == Sheet::kFar;
   const int bottom = std::min(triangle.bottom, band.bottom);
   for (int row = std::max(triangle.top, band.top); row < bottom; ++row) {
     const double y = row + 0.5;
@@ -286,12 +309,13 @@ void for_each_place(const ScreenTriangle& triangle, const Band& band, int width,
       const double x = column + 0.5;
       Place place;
       place.at = static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
-      place.inverse = fills ? triangle.farthest * kFilled : static_cast<float>(triangle.inverse.at(x, y));
+      place.inverse = made_up ? triangle.farthest * kFilled : static_cast<float>(triangle.inverse.at(x, y));
       if (place.inverse <= inverse[place.at]) continue;
       const double w = triangle.w.at(x, y);
       place.x = static_cast<float>(triangle.pixel_x.at(x, y) / w);
       place.y = static_cast<float>(triangle.pixel_y.at(x, y) / w);
-      place.front = triangle.front.at(x, y) >= 0.5 * w;
+      place.front = static_cast<float>(triangle.front.at(x, y) / w);
+      if (continued) place.continued = color_of(triangle.continued, x, y, w);
       draw(place);
     }
   }
@@ -319,13 +343,14 @@ void draw_newest(const Pixels& pixels, const std::vector<ScreenTriangle>& triang
 void draw_rest(const Pixels& pixels, const std::vector<ScreenTriangle>& triangles, const Band& band,
                const Target& newest, int most_off, Target& target, Pixels& picture) {
   for (const ScreenTriangle& triangle : triangles) {
-    if (triangle.mesh->sheet == Sheet::kFill || triangle.mesh->background) continue;
+    const Sheet sheet = triangle.mesh->sheet;
+    if (sheet == Sheet::kFill || sheet == Sheet::kSurroundings || triangle.mesh->background) continue;
     for_each_place(triangle, band, target.width, target.inverse, [&](const Place& place) {
       const float there = newest.inverse[place.at];
       const bool nothing = there < 0 || newest.density[place.at] < 0;
       const bool agrees = std::abs(place.inverse - there) <= kAgreement * std::max(place.inverse, there);
       const bool wanted = nothing || (agrees && triangle.density >= newest.density[place.at]);
-      const bool certain = triangle.mesh->sheet == Sheet::kSurface;
+      const bool certain = sheet == Sheet::kSurface;
       const Shown drawn = wanted || !certain ? shown(pixels, triangle, place) : Shown{};
       if (!drawn.own) return;
       target.inverse[place.at] = place.inverse;
@@ -346,6 +371,12 @@ void in_bands(int height, const Draw& draw) {
 }
 
 }  // namespace
+
+WarpFrame make_warp_frame(Pixels pixels, const geometry::CameraFrame& camera, const DepthPlane& depth) {
+  WarpMesh mesh = make_warp_mesh(depth, pixels.width, pixels.height);
+  std::vector<Color> colors = fill_colors(pixels, depth);
+  return {std::move(pixels), camera, std::move(mesh), std::move(colors), depth.seen_through};
+}
 
 Pixels warp(const WarpFrame& newest, const WarpFrame* rest, const geometry::CameraFrame& target,
             const std::array<uint8_t, 4>& background) {

@@ -43,6 +43,13 @@ class Grid {
   [[nodiscard]] float inverse(int x, int y) const { return inverse_[index(x, y)]; }
   [[nodiscard]] glm::vec2 pixel(int x, int y) const { return {x_[static_cast<size_t>(x)], y_[static_cast<size_t>(y)]}; }
 
+  /// The texel of a vertex; of one on the border, the nearest.
+  [[nodiscard]] size_t texel(const glm::ivec2& at) const {
+    const int column = std::clamp(at.x - 1, 0, columns_ - 3);
+    const int row = std::clamp(at.y - 1, 0, rows_ - 3);
+    return static_cast<size_t>(row) * static_cast<size_t>(columns_ - 2) + static_cast<size_t>(column);
+  }
+
   [[nodiscard]] bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < columns_ && y < rows_; }
 
   /// Whether the surface is broken between (x, y) and its neighbour (x + dx, y + dy).
@@ -182,7 +189,7 @@ class MeshBuilder {
     }
   }
 
-  /// Continues the frame beyond its border, for what a turning eye sees there, in the colours of the border.
+  /// Continues the frame beyond its border, for what a turning eye sees there.
   void add_surroundings(float margin) {
     const int right = grid_.columns() - 1;
     const int bottom = grid_.rows() - 1;
@@ -202,13 +209,14 @@ class MeshBuilder {
   using Corners = std::array<glm::ivec2, 3>;
 
   [[nodiscard]] const Outline& outline(const glm::ivec2& at) const { return outlines_[grid_.index(at.x, at.y)]; }
+  [[nodiscard]] float inverse(const glm::ivec2& at) const { return grid_.inverse(at.x, at.y); }
 
   [[nodiscard]] MeshTriangle plain(const Corners& corners) const {
     MeshTriangle triangle;
     triangle.background = true;
     for (size_t i = 0; i < 3; ++i) {
       const glm::ivec2& at = corners.at(i);
-      triangle.corners.at(i) = {grid_.pixel(at.x, at.y), grid_.inverse(at.x, at.y), 0};
+      triangle.corners.at(i) = {grid_.pixel(at.x, at.y), grid_.inverse(at.x, at.y)};
       triangle.background &= triangle.corners.at(i).inverse == 0;
     }
     return triangle;
@@ -216,13 +224,12 @@ class MeshBuilder {
 
   /// A strip from the border between two vertices outwards.
   void add_strip(const glm::ivec2& a, const glm::ivec2& b, const glm::vec2& outwards) {
-    const MeshVertex from{grid_.pixel(a.x, a.y), grid_.inverse(a.x, a.y), 0};
-    const MeshVertex to{grid_.pixel(b.x, b.y), grid_.inverse(b.x, b.y), 0};
-    const MeshVertex from_outside{from.pixel + outwards, from.inverse, 0};
-    const MeshVertex to_outside{to.pixel + outwards, to.inverse, 0};
+    const MeshVertex from{grid_.pixel(a.x, a.y), grid_.inverse(a.x, a.y), 1, grid_.texel(a)};
+    const MeshVertex to{grid_.pixel(b.x, b.y), grid_.inverse(b.x, b.y), 1, grid_.texel(b)};
+    const MeshVertex from_outside{from.pixel + outwards, from.inverse, 0, from.continued};
+    const MeshVertex to_outside{to.pixel + outwards, to.inverse, 0, to.continued};
     MeshTriangle triangle;
-    triangle.sheet = Sheet::kFill;
-    triangle.far = (from.pixel + to.pixel) / 2.0F;
+    triangle.sheet = Sheet::kSurroundings;
     triangle.corners = {from, to, to_outside};
     mesh_.push_back(triangle);
     triangle.corners = {from, to_outside, from_outside};
@@ -236,35 +243,49 @@ class MeshBuilder {
       mesh_.push_back(triangle);
       return;
     }
-    const Outline& across = outline(*beside);
-    triangle.far = grid_.pixel(across.far_at.x, across.far_at.y);
+    const glm::ivec2 far_at = outline(*beside).far_at;
+    triangle.far = grid_.pixel(far_at.x, far_at.y);
     triangle.background = false;
-    if (cut) {
-      triangle.sheet = Sheet::kFill;
-      mesh_.push_back(triangle);
+    if (cut) add_fill(triangle, corners);
+    add_sheets(triangle, corners, far_at);
+  }
+
+  /// The farthest corner goes on to those that are nearer to the nearest one. Background has nothing that could blend
+  /// with it.
+  void add_fill(MeshTriangle triangle, const Corners& corners) {
+    const auto by_inverse = [&](const glm::ivec2& at) { return inverse(at); };
+    const auto [far, near] = std::ranges::minmax(corners, {}, by_inverse);
+    triangle.sheet = Sheet::kFill;
+    for (size_t i = 0; i < 3; ++i) {
+      const glm::ivec2& at = corners.at(i);
+      const bool in_front = inverse(near) - inverse(at) <= inverse(at) - inverse(far);
+      triangle.corners.at(i).continued = grid_.texel(in_front || inverse(far) == 0 ? far : at);
     }
+    mesh_.push_back(triangle);
+  }
+
+  /// `triangle`: one beside an outline, which has `farthest` behind it.
+  void add_sheets(const MeshTriangle& triangle, const Corners& corners, glm::ivec2 farthest) {
     float nearest = 0;
-    float farthest = across.far;
     for (const glm::ivec2& at : corners) {
       if (!outline(at).beside) continue;
       nearest = std::max(nearest, outline(at).near);
-      farthest = std::min(farthest, outline(at).far);
+      if (outline(at).far < inverse(farthest)) farthest = outline(at).far_at;
     }
-    add_sheets(triangle, corners, nearest, farthest);
-  }
-
-  void add_sheets(const MeshTriangle& triangle, const Corners& corners, float nearest, float farthest) {
     MeshTriangle near = triangle;
     MeshTriangle far = triangle;
     near.sheet = Sheet::kNear;
     far.sheet = Sheet::kFar;
     for (size_t i = 0; i < 3; ++i) {
-      const Outline& corner = outline(corners.at(i));
-      const float own = triangle.corners.at(i).inverse;
-      const bool in_front = nearest - own <= own - farthest;
+      const glm::ivec2& at = corners.at(i);
+      const Outline& corner = outline(at);
+      const float own = inverse(at);
+      const bool in_front = nearest - own <= own - inverse(farthest);
       near.corners.at(i).front = far.corners.at(i).front = in_front ? 1.0F : 0.0F;
       near.corners.at(i).inverse = corner.beside ? corner.near : (in_front ? own : nearest);
-      far.corners.at(i).inverse = corner.beside ? corner.far : (in_front ? farthest : own);
+      const glm::ivec2 behind = corner.beside ? corner.far_at : (in_front ? farthest : at);
+      far.corners.at(i).inverse = inverse(behind);
+      far.corners.at(i).continued = grid_.texel(behind);
     }
     mesh_.push_back(far);
     mesh_.push_back(near);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <vector>
@@ -14,17 +15,20 @@ struct MeshVertex {
   glm::vec2 pixel{0};  ///< from the upper left corner of the frame
   float inverse = 0;   ///< 1 / depth; 0: infinitely far
   /// Of kNear and kFar: 1 where the texel is the surface in front, 0 where it is what is behind. Interpolated, it is at
-  /// least a half in the texels of the surface in front.
+  /// least a half in the texels of the surface in front. Of kSurroundings: 1 at the border of the frame, 0 farthest
+  /// out.
   float front = 0;
+  size_t continued = 0;  ///< but for kSurface and kNear: the texel of the surface that goes on here, unseen
 };
 
 /// A texel beside an outline has pixels of the surface in front, and may have pixels of what is behind. There a frame
 /// is two sheets, one at each depth. Pixels that have the colour of what is behind are on the far one.
 enum class Sheet : uint8_t {
-  kSurface,  ///< away from outlines
-  kNear,     ///< the surface in front
-  kFar,      ///< what is behind it; where the frame shows the surface in front, the colour beside that is continued
-  kFill,     ///< what the frame does not show: between the two, and beyond the border
+  kSurface,       ///< away from outlines
+  kNear,          ///< the surface in front
+  kFar,           ///< what is behind it, also where the frame shows the surface in front
+  kFill,          ///< what opens between the two
+  kSurroundings,  ///< beyond the border of the frame
 };
 
 /// Three neighbouring places.
@@ -32,7 +36,7 @@ struct MeshTriangle {
   std::array<MeshVertex, 3> corners;
   Sheet sheet = Sheet::kSurface;
   bool background = false;  ///< of kSurface: infinitely far
-  glm::vec2 far{0};         ///< of the others: where the frame shows what is behind, pixels
+  glm::vec2 far{0};         ///< of kNear and kFar: where the frame shows what is behind, pixels
 };
 
 /// The triangles of a frame with this depth and `width` x `height` pixels. They reach to the borders of the frame.

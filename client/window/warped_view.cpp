@@ -34,10 +34,7 @@ std::shared_ptr<const warp::WarpFrame> warp_frame(const wire::ViewFrame& frame, 
   const Result<geometry::CameraFrame> camera = frame_of(frame.picture().camera(), image.width, image.height);
   if (!depth || !camera) return nullptr;
   return std::make_shared<const warp::WarpFrame>(
-      warp::WarpFrame{{image.width, image.height, image.pixels},
-                      *camera,
-                      warp::make_warp_mesh(*depth, image.width, image.height),
-                      depth->seen_through});
+      warp::make_warp_frame({image.width, image.height, image.pixels}, *camera, *depth));
 }
 
 }  // namespace

@@ -44,15 +44,12 @@ const std::vector<Movement>& movements() {
 
 warp::WarpFrame warp_frame(const picture::Frame& drawn) {
   const picture::Image& image = drawn.image;
-  warp::WarpFrame frame{{image.width, image.height, std::vector<uint8_t>(image.pixels.size())},
-                        *geometry::make_camera_frame(drawn.camera, image.width, image.height),
-                        {},
-                        drawn.depth.seen_through};
-  std::memcpy(frame.pixels.bytes.data(), image.pixels.data(), image.pixels.size());
+  warp::Pixels pixels{image.width, image.height, std::vector<uint8_t>(image.pixels.size())};
+  std::memcpy(pixels.bytes.data(), image.pixels.data(), image.pixels.size());
   const warp::DepthPlane plane{drawn.depth.width, drawn.depth.height, drawn.depth.cell, drawn.depth.inverse,
                                drawn.depth.seen_through};
-  frame.mesh = warp::make_warp_mesh(plane, image.width, image.height);
-  return frame;
+  return warp::make_warp_frame(std::move(pixels), *geometry::make_camera_frame(drawn.camera, image.width, image.height),
+                               plane);
 }
 
 /// PSNR in dB.

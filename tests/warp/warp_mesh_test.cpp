@@ -44,6 +44,12 @@ bool in_frame(const MeshTriangle& triangle) {
   });
 }
 
+/// Of a texel.
+glm::vec2 centre_of(size_t texel) {
+  const size_t columns = (kMeshedWidth + kMeshedCell - 1) / kMeshedCell;
+  return (glm::vec2(texel % columns, texel / columns) + 0.5F) * float{kMeshedCell};
+}
+
 float step(double x, double) {
   return x < 40 ? 1.0F : 0.1F;
 }
@@ -66,7 +72,7 @@ TEST(WarpMesh, CoversTheFrameOnceWithEachSheet) {
 TEST(WarpMesh, GoesOnBeyondTheBorders) {
   const WarpMesh mesh = make_warp_mesh(plane_of([](double, double) { return 1.0F; }), kMeshedWidth, kMeshedHeight);
   EXPECT_EQ(count(mesh, Sheet::kNear), 0U);
-  for (const MeshTriangle& triangle : mesh) EXPECT_EQ(triangle.sheet == Sheet::kFill, !in_frame(triangle));
+  for (const MeshTriangle& triangle : mesh) EXPECT_EQ(triangle.sheet == Sheet::kSurroundings, !in_frame(triangle));
 }
 
 TEST(WarpMesh, OfASlantedPlaneIsWholeAndLiesInIt) {
@@ -78,7 +84,7 @@ TEST(WarpMesh, OfASlantedPlaneIsWholeAndLiesInIt) {
     for (const MeshVertex& vertex : triangle.corners) {
       // (The cells at the right and at the lower border are narrower.)
       const bool border = vertex.pixel.x < 8 || vertex.pixel.y < 8 || vertex.pixel.x > 108 || vertex.pixel.y > 56;
-      if (triangle.sheet == Sheet::kFill || border) continue;
+      if (triangle.sheet == Sheet::kSurroundings || border) continue;
       // The nearest pixel of a cell has its centre half a pixel before the corner of the cell.
       EXPECT_NEAR(vertex.inverse, inverse(vertex.pixel.x, vertex.pixel.y), 0.025) << vertex.pixel.x;
     }
@@ -92,8 +98,12 @@ TEST(WarpMesh, IsTwoSheetsAroundASquareBeforeAPlane) {
   EXPECT_GT(count(mesh, Sheet::kNear), 0U);
   for (const MeshTriangle& triangle : mesh) {
     if (triangle.sheet == Sheet::kSurface || !in_frame(triangle)) continue;
-    EXPECT_FALSE(square(triangle.far.x, triangle.far.y)) << "holes have the colour of what is behind";
+    EXPECT_FALSE(square(triangle.far.x, triangle.far.y));
     for (const MeshVertex& vertex : triangle.corners) {
+      if (triangle.sheet != Sheet::kNear) {
+        const glm::vec2 centre = centre_of(vertex.continued);
+        EXPECT_FALSE(square(centre.x, centre.y)) << "what is behind goes on";
+      }
       if (triangle.sheet == Sheet::kFill) continue;
       EXPECT_EQ(vertex.inverse, triangle.sheet == Sheet::kNear ? 1.0F : 0.2F);
       EXPECT_EQ(vertex.front == 1, square(vertex.pixel.x, vertex.pixel.y));

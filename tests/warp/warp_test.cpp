@@ -39,20 +39,19 @@ Hit hit_at(const Scene& scene, const geometry::CameraFrame& camera, const glm::d
 }
 
 WarpFrame draw(const Scene& scene, const geometry::CameraFrame& from, int cell = kFrameCell) {
-  WarpFrame frame{{from.width, from.height, {}}, from, {}, false};
+  Pixels pixels{from.width, from.height, {}};
   DepthPlane depth{(from.width + cell - 1) / cell, (from.height + cell - 1) / cell, cell, {}};
   depth.inverse.assign(static_cast<size_t>(depth.width) * static_cast<size_t>(depth.height), 0);
   for (int y = 0; y < from.height; ++y) {
     for (int x = 0; x < from.width; ++x) {
       const Hit hit = hit_at(scene, from, {x + 0.5, y + 0.5});
-      frame.pixels.bytes.insert(frame.pixels.bytes.end(), hit.color.begin(), hit.color.end());
-      frame.pixels.bytes.push_back(255);
+      pixels.bytes.insert(pixels.bytes.end(), hit.color.begin(), hit.color.end());
+      pixels.bytes.push_back(255);
       float& texel = depth.inverse[static_cast<size_t>(y / cell * depth.width + x / cell)];
       if (hit.depth > 0) texel = std::max(texel, static_cast<float>(1 / hit.depth));
     }
   }
-  frame.mesh = make_warp_mesh(depth, from.width, from.height);
-  return frame;
+  return make_warp_frame(std::move(pixels), from, depth);
 }
 
 /// Coordinates as colours, which bilinear interpolation keeps.
@@ -180,6 +179,63 @@ TEST(Warp, WhatComesOutBehindANearSquareHasTheColorOfTheWall) {
       EXPECT_LE(difference(shown, truth), 60) << x << " " << y;
     }
   }
+}
+
+TEST(Warp, WhatOpensHasTheMeanColorOfWhatIsBehind) {
+  // A wall of lines, one pixel each; the mean of any texels is 150.
+  const geometry::CameraFrame from = camera({0, 0, 4}, {0, 0, 0});
+  const auto lines = [&](const glm::dvec3& eye, const glm::dvec3& ray) {
+    Hit hit = square(eye, ray);
+    if (hit.color == Color{255, 0, 0}) return hit;
+    const auto row = static_cast<int>(from.project(from.to_camera(eye + hit.depth * ray)).y + 1000);
+    hit.color = row % 2 == 0 ? Color{0, 100, 0} : Color{0, 200, 0};
+    return hit;
+  };
+  const WarpFrame frame = draw(lines, from);
+  const geometry::CameraFrame to = camera({0.9, 0, 4}, {0.9, 0, 0});  // the square by 82 pixels, the wall by 62
+  const Pixels warped = warp(frame, nullptr, to, kBackground);
+  int opened = 0;
+  for (int y = 70; y < 130; ++y) {
+    for (int x = 0; x < kFrameWidth; ++x) {
+      const glm::dvec2 pixel(x + 0.5, y + 0.5);
+      const Hit hit = hit_at(square, to, pixel);
+      // (Within a cell of the outline, pixels of the wall may be taken for the square.)
+      if (hit_at(square, to, {x + 0.5 - kFrameCell, y + 0.5}).color == Color{255, 0, 0}) continue;
+      const glm::dvec3 ray = to.ray(pixel);
+      const glm::dvec3 world = to.eye + hit.depth * (to.right * ray.x + to.up * ray.y + to.forward * ray.z);
+      const double source = from.project(from.to_camera(world)).x;
+      if (std::abs(source - kFrameWidth / 2.0) > from.eta / 6 - 10) continue;  // seen by the frame, or nearly
+      ++opened;
+      EXPECT_LE(difference(pixel_of(warped, x, y), {0, 150, 0}), 1) << x << " " << y;
+    }
+  }
+  EXPECT_GT(opened, 100);
+}
+
+TEST(Warp, BeyondTheBorderIsAReflectionThatIsLostInTheMeanOfTheBorder) {
+  const geometry::CameraFrame from = camera({0, 0, 4}, {0, 0, 0});
+  const geometry::CameraFrame to = camera({0, 0, 4}, {0.4, 0, 0});  // a turn to the right
+  const auto stripes = [](const glm::dvec3& eye, const glm::dvec3& ray) {
+    Hit hit = wall(eye, ray);
+    const bool light = std::fmod((eye + hit.depth * ray).x + 100, 0.2) < 0.1;  // 7 pixels each
+    hit.color = light ? Color{200, 200, 200} : Color{100, 100, 100};
+    return hit;
+  };
+  const WarpFrame frame = draw(stripes, from);
+  const Pixels warped = warp(frame, nullptr, to, kBackground);
+  int columns = 0;
+  for (int x = 0; x < kFrameWidth; ++x) {
+    const glm::dvec3 ray = to.ray({x + 0.5, kFrameHeight / 2.0});
+    const double source = from.project(from.rotate(to.right * ray.x + to.up * ray.y + to.forward * ray.z)).x;
+    if (source <= kFrameWidth) continue;
+    const auto reflected = static_cast<int>(2 * kFrameWidth - source);
+    const auto in_frame = [&](int column) { return int{pixel_of(frame.pixels, column, kFrameHeight / 2)[0]}; };
+    if (in_frame(reflected - 1) != in_frame(reflected + 1)) continue;  // between two stripes
+    const double share = std::pow(1 - std::min((source - kFrameWidth) / (kFrameHeight / 4.0), 1.0), 2);
+    EXPECT_NEAR(pixel_of(warped, x, kFrameHeight / 2)[0], share * in_frame(reflected) + (1 - share) * 150, 12) << x;
+    ++columns;
+  }
+  EXPECT_GT(columns, 20);
 }
 
 TEST(Warp, ASharperFrameAtRestIsShownWhereItAgrees) {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ._values import Camera
 from ._view import Frame
+from ._fill_colors import fill_colors
 from ._warp_mesh import Sheet, WarpMesh, make_warp_mesh
 from .errors import InvalidInput
 
@@ -95,6 +96,7 @@ class _Source:
     pixels: _A
     lens: _Lens
     mesh: WarpMesh
+    fill_colors: _A  # of the texels of its depth
     most_off: float  # squared difference of colours up to which it is shown above another frame
 
     @staticmethod
@@ -104,11 +106,12 @@ class _Source:
         resolution = frame.picture.resolution
         lens = _Lens.of(frame.picture.camera, resolution)
         mesh = make_warp_mesh(frame.depth, resolution)
-        return _Source(frame.picture.array, lens, mesh, _SAME_LOOK if frame.depth.seen_through else math.inf)
+        pixels, most_off = frame.picture.array, _SAME_LOOK if frame.depth.seen_through else math.inf
+        return _Source(pixels, lens, mesh, fill_colors(pixels, frame.depth), most_off)
 
     def without_fill(self) -> _Source:
         mesh = self.mesh
-        return _Source(self.pixels, self.lens, mesh.only((mesh.sheet != Sheet.FILL) & ~mesh.background), self.most_off)
+        return replace(self, mesh=mesh.only((mesh.sheet < Sheet.FILL) & ~mesh.background))
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,8 +158,10 @@ class _Triangles:
         mesh, w, screen, area = mesh.only(shown), w[shown], screen[shown], area[shown]
         self.mesh, self.first, self.end = mesh, first[shown], end[shown]
         self.parts = _barycentric(screen, area)
-        values = np.stack([np.ones_like(w), mesh.inverse, mesh.pixel[..., 0], mesh.pixel[..., 1], mesh.front], axis=1)
-        # 1 / w, inverse depth, pixel of the frame and front: constant, along x, along y.
+        continued = np.moveaxis(source.fill_colors[mesh.continued], -1, 0)
+        own = [np.ones_like(w), mesh.inverse, mesh.pixel[..., 0], mesh.pixel[..., 1], mesh.front]
+        values = np.stack([*own, *continued], axis=1)
+        # 1 / w, inverse depth, pixel of the frame, front and what goes on unseen: constant, along x, along y.
         self.planes = np.einsum("tvc,tcp->tvp", values / w[:, None], self.parts)
         self.farthest = (mesh.inverse / w).min(axis=1)
         self.density = np.sqrt(np.abs(_area(mesh.pixel) / area))
@@ -214,15 +219,22 @@ def _fragments(source: _Source, triangles: _Triangles, chunk: _A, target: _Lens)
     """What each triangle shows in each pixel."""
     triangle, column, row = triangles.places(chunk)
     place = np.stack([np.ones(len(row)), column + 0.5, row + 0.5], axis=1)
-    w, inverse, x, y, front = np.einsum("tvp,tp->vt", triangles.planes[triangle], place)
+    w, inverse, x, y, front, *continued = np.einsum("tvp,tp->vt", triangles.planes[triangle], place)
+    x, y, front = x / w, y / w, front / w
+    unseen = (np.clip(np.stack(continued, axis=-1) / w[:, None], 0, 255) + 0.5).astype(np.uint8)
     sheet, far = triangles.mesh.sheet[triangle], triangles.far[triangle]
-    color = _sample(source.pixels, x / w, y / w)
-    in_front = (front >= 0.5 * w) & (_distance(color, far) >= _SAME_COLOR)
+    around = sheet == Sheet.SURROUNDINGS
+    height, width = source.pixels.shape[:2]
+    x, y = np.where(around, _reflected(x, width), x), np.where(around, _reflected(y, height), y)
+    color = _sample(source.pixels, x, y)
+    # Beyond the border of a frame its reflection is lost in the mean colour of the border.
+    unseen = np.where(around[:, None], _mixed(unseen, color, 256 * np.clip(front, 0, 1) ** 2), unseen)
+    in_front = (front >= 0.5) & (_distance(color, far) >= _SAME_COLOR)
     own = (sheet == Sheet.SURFACE) | ((sheet == Sheet.NEAR) & in_front) | ((sheet == Sheet.FAR) & ~in_front)
-    inverse = np.where(sheet == Sheet.FILL, triangles.farthest[triangle] * _FILLED, inverse)
+    inverse = np.where(sheet >= Sheet.FILL, triangles.farthest[triangle] * _FILLED, inverse)
     inverse = np.where((sheet == Sheet.FAR) & ~own, inverse * _CONTINUED, inverse)
     drawn = (own | (sheet != Sheet.NEAR)) & (inverse > -1)
-    color = np.where(own[:, None], color, far)
+    color = np.where(own[:, None], color, unseen)
     density = np.where(own, triangles.density[triangle], -1)
     return _Seen(row * target.width + column, inverse, density, color).only(drawn)
 
@@ -254,11 +266,18 @@ def _sample(pixels: _A, x: _A, y: _A) -> _A:
     right, below = np.minimum(left + 1, width - 1), np.minimum(top + 1, height - 1)
     part_x, part_y = ((v - first) * 256 for v, first in ((column, left), (row, top)))
 
-    def mixed(a: _A, b: _A, part: _A) -> _A:
-        share = part.astype(np.int32)[:, None]
-        values: _A = (a.astype(np.int32) * (256 - share) + b.astype(np.int32) * share + 128) >> 8
-        return values
+    upper = _mixed(pixels[top, left], pixels[top, right], part_x)
+    lower = _mixed(pixels[below, left], pixels[below, right], part_x)
+    return _mixed(upper, lower, part_y).astype(np.uint8)
 
-    upper = mixed(pixels[top, left], pixels[top, right], part_x)
-    lower = mixed(pixels[below, left], pixels[below, right], part_x)
-    return mixed(upper, lower, part_y).astype(np.uint8)
+
+def _mixed(a: _A, b: _A, part: _A) -> _A:
+    """Between two colours, by 256ths."""
+    share = part.astype(np.int32)[:, None]
+    values: _A = (a.astype(np.int32) * (256 - share) + b.astype(np.int32) * share + 128) >> 8
+    return values
+
+
+def _reflected(at: _A, size: int) -> _A:
+    reflected: _A = np.where(at < 0, -at, np.minimum(at, 2 * size - at))
+    return reflected

@@ -25,7 +25,8 @@ class Sheet(IntEnum):
     SURFACE = 0  # away from outlines
     NEAR = 1
     FAR = 2
-    FILL = 3  # what the frame does not show: between the two, and beyond the border
+    FILL = 3  # what opens between the two
+    SURROUNDINGS = 4  # beyond the border of the frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +35,13 @@ class WarpMesh:
 
     pixel: _A  # (n, 3, 2), from the upper left corner of the frame
     inverse: _A  # (n, 3), 1 / depth; 0: infinitely far
-    front: _A  # (n, 3), 1 where a corner is the surface in front, 0 where it is what is behind
+    # (n, 3), of NEAR and FAR: 1 where a corner is the surface in front, 0 where it is what is behind;
+    # of SURROUNDINGS: 1 at the border of the frame, 0 farthest out
+    front: _A
+    continued: _A  # (n, 3), of FAR, FILL and SURROUNDINGS: the texel of the surface that goes on here, unseen
     sheet: _A  # (n,)
     background: _A  # (n,), of SURFACE: infinitely far
-    far: _A  # (n, 2), of the other sheets: where the frame shows what is behind, pixels
+    far: _A  # (n, 2), of NEAR and FAR: where the frame shows what is behind, pixels
 
     def only(self, chosen: _A) -> WarpMesh:
         return WarpMesh(*(values[chosen] for values in vars(self).values()))
@@ -104,6 +108,13 @@ class _Grid:
             beyond = np.maximum(last + (last - before) / 2, last / 2)
             row[:, 0] = np.where(_cuts(row[:, :4], self.cell)[:, 1], last, beyond)
 
+    def texels(self, at: _A) -> _A:
+        """Those of vertices by their numbers; of vertices on the border, the nearest."""
+        columns, rows = len(self.x) - 2, len(self.y) - 2
+        column = np.clip(at % len(self.x) - 1, 0, columns - 1)
+        texels: _A = np.clip(at // len(self.x) - 1, 0, rows - 1) * columns + column
+        return texels
+
     def pixels(self, at: _A) -> _A:
         """The places of vertices by their numbers, row after row."""
         return np.stack([self.x[at % len(self.x)], self.y[at // len(self.x)]], axis=-1)
@@ -160,33 +171,46 @@ def _sheets(grid: _Grid) -> list[WarpMesh]:
         pixel=grid.pixels(corners),
         inverse=inverse,
         front=none,
+        continued=np.zeros(corners.shape, int),
         sheet=np.full(len(corners), Sheet.SURFACE),
         background=(inverse == 0).all(axis=1),
         far=grid.pixels(outlines.far_at.ravel()[across]),
     )
     outlined = beside.any(axis=1)
     split = replace(plain, background=np.zeros(len(corners), bool))
-    near, far = (values.ravel()[corners] for values in (outlines.near, outlines.far))
+    near, far, far_at = (values.ravel()[corners] for values in (outlines.near, outlines.far, outlines.far_at))
     nearest = np.where(beside, near, 0).max(axis=1, keepdims=True)
     farthest = np.where(beside, far, np.inf).min(axis=1, keepdims=True)
     in_front = nearest - inverse <= inverse - farthest
     in_near = np.where(beside, near, np.where(in_front, inverse, nearest))
     in_far = np.where(beside, far, np.where(in_front, farthest, inverse))
+    # The farthest of the vertices beside an outline goes on to those that are not, if they are in front.
+    last = np.where(beside, far, np.inf).argmin(axis=1)[:, None]
+    behind = np.where(beside, far_at, np.where(in_front, np.take_along_axis(far_at, last, axis=1), corners))
 
-    def sheet(kind: Sheet, inverse: _A, front: _A, chosen: _A) -> WarpMesh:
+    def sheet(kind: Sheet, inverse: _A, front: _A, continued: _A, chosen: _A) -> WarpMesh:
         kinds = np.full(len(corners), kind)
-        return replace(split, inverse=inverse, front=front, sheet=kinds).only(chosen)
+        texels = grid.texels(continued)
+        return replace(split, inverse=inverse, front=front, continued=texels, sheet=kinds).only(chosen)
 
     return [
         plain.only(~outlined),
-        sheet(Sheet.FILL, inverse, none, outlined & cut),
-        sheet(Sheet.FAR, in_far, in_front.astype(float), outlined),
-        sheet(Sheet.NEAR, in_near, in_front.astype(float), outlined),
+        sheet(Sheet.FILL, inverse, none, _filling(corners, inverse), outlined & cut),
+        sheet(Sheet.FAR, in_far, in_front.astype(float), behind, outlined),
+        sheet(Sheet.NEAR, in_near, in_front.astype(float), corners, outlined),
     ]
 
 
+def _filling(corners: _A, inverse: _A) -> _A:
+    """The farthest corner goes on to those that are nearer to the nearest one. Background does not blend."""
+    nearest, farthest = inverse.max(axis=1, keepdims=True), inverse.min(axis=1, keepdims=True)
+    far = np.take_along_axis(corners, inverse.argmin(axis=1)[:, None], axis=1)
+    filling: _A = np.where((nearest - inverse <= inverse - farthest) | (farthest == 0), far, corners)
+    return filling
+
+
 def _surroundings(grid: _Grid, margin: float) -> WarpMesh:
-    """Strips beyond the border, for what a turning eye sees there, in the colours of the border."""
+    """Strips beyond the border, for what a turning eye sees there."""
     numbers = np.arange(grid.inverse.size).reshape(grid.inverse.shape)
     sides = (
         (numbers[0], (0, -margin)),
@@ -194,27 +218,27 @@ def _surroundings(grid: _Grid, margin: float) -> WarpMesh:
         (numbers[:, 0], (-margin, 0)),
         (numbers[:, -1], (margin, 0)),
     )
-    pixel, inverse = [], []
+    pixel: list[_A] = []
+    inverse: list[_A] = []
+    front: list[_A] = []
+    continued: list[_A] = []
     for along, outwards in sides:
         ends = np.stack([along[:-1], along[1:]], axis=1)
         inner, depth = grid.pixels(ends), grid.inverse.ravel()[ends]
         quad = np.concatenate([inner, inner + np.asarray(outwards)], axis=1)  # from, to, both of them outside
         for corners in ([0, 1, 3], [0, 3, 2]):
             pixel.append(quad[:, corners])
-            inverse.append(depth[:, [corner % 2 for corner in corners]])
+            own = [corner % 2 for corner in corners]
+            inverse.append(depth[:, own])
+            continued.append(grid.texels(ends)[:, own])
+            front.append(np.tile([float(corner < 2) for corner in corners], (len(quad), 1)))
     count = sum(map(len, pixel))
-    far = np.concatenate([each for along, _ in sides for each in [_middles(grid, along)] * 2])
     return WarpMesh(
         pixel=np.concatenate(pixel),
         inverse=np.concatenate(inverse),
-        front=np.zeros((count, 3)),
-        sheet=np.full(count, Sheet.FILL),
+        front=np.concatenate(front),
+        continued=np.concatenate(continued),
+        sheet=np.full(count, Sheet.SURROUNDINGS),
         background=np.zeros(count, bool),
-        far=far,
+        far=np.zeros((count, 2)),
     )
-
-
-def _middles(grid: _Grid, along: _A) -> _A:
-    places = grid.pixels(along)
-    middles: _A = (places[:-1] + places[1:]) / 2
-    return middles

@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 import surfcast
+from surfcast._fill_colors import fill_colors
 from surfcast._picture import picture_from
 from surfcast._warp import _Lens
 from surfcast._wire import surfcast_pb2 as wire
@@ -141,6 +142,63 @@ def test_what_comes_out_behind_a_square_has_the_color_of_the_wall() -> None:
     truth = seen(square, target)[1]
     behind = ~(truth == RED).all(axis=-1) & (off(warped, np.asarray(RED)) > 150)
     assert off(warped, truth)[40:-40, 40:-80][behind[40:-40, 40:-80]].max() <= 60
+
+
+def test_what_comes_out_has_the_mean_color_of_what_is_behind() -> None:
+    source = camera((0, 0, 4), (0, 0, 0))
+    target = camera((0.9, 0, 4), (0.9, 0, 0))
+
+    def lines(eye: Array, rays: Array) -> tuple[Array, Array]:
+        depth, color = square(eye, rays)
+        lens = _Lens.of(source, SIZE)
+        along = (eye + depth[..., None] * rays - lens.eye) @ lens.axes.T
+        row = np.floor(SIZE[1] / 2 - lens.eta * along[..., 1] / along[..., 2])
+        levels = np.stack([np.zeros_like(row), np.where(row % 2 == 0, 100, 200), np.zeros_like(row)], axis=-1)
+        return depth, np.where((color == RED).all(axis=-1, keepdims=True), color, levels)
+
+    warped = surfcast.warp(frame_of(lines, source), target)
+    # (Within a cell of the outline, pixels of the wall may be taken for the square.)
+    clear = np.roll((seen(square, target)[1] != RED).any(axis=-1), CELL, axis=1)
+    unseen = np.abs(source_pixels(wall, source, target)[..., 0] - SIZE[0] / 2) < _Lens.of(target, SIZE).eta / 6 - 10
+    opened = (clear & unseen)[70:130]
+    assert opened.sum() > 100
+    assert off(warped, np.asarray((0, 150, 0)))[70:130][opened].max() <= 1
+
+
+def test_beyond_the_border_is_a_reflection_that_is_lost_in_the_mean_of_the_border() -> None:
+    source = camera((0, 0, 4), (0, 0, 0))
+    target = camera((0, 0, 4), (0.4, 0, 0))  # a turn to the right
+
+    def stripes(eye: Array, rays: Array) -> tuple[Array, Array]:
+        depth, _ = wall(eye, rays)
+        light = (eye + depth[..., None] * rays)[..., 0] % 0.2 < 0.1  # 7 pixels each
+        return depth, np.where(light[..., None], 200, 100) + np.zeros(3)
+
+    frame = frame_of(stripes, source)
+    row = SIZE[1] // 2
+    warped = surfcast.warp(frame, target)[row, :, 0].astype(float)
+    beyond = source_pixels(wall, source, target)[row, :, 0] - SIZE[0]
+    reflected = (SIZE[0] - beyond).astype(int)
+    shown = frame.picture.array[row, :, 0].astype(float)
+    column = np.clip(reflected, 1, SIZE[0] - 2)
+    plain = (beyond > 1) & (shown[column - 1] == shown[column + 1])  # not between two stripes
+    kept = (1 - np.clip(beyond / (SIZE[1] / 4), 0, 1)) ** 2
+    expected = kept * shown[column] + (1 - kept) * 150
+    assert plain.sum() > 20
+    assert np.abs(warped - expected)[plain].max() <= 12
+
+
+def test_colors_that_go_on_do_not_mix_surfaces() -> None:
+    part = np.arange(24) // 8  # near, far, background
+    picture = np.broadcast_to(255 * np.eye(3, dtype=np.uint8)[part], (8, 24, 3))
+    inverse = np.broadcast_to(np.array([1, 1, 0.5, 0.5, 0, 0], np.float32), (2, 6))
+    colors = fill_colors(picture, surfcast.Depth(4, inverse)).reshape(2, 6, 3)
+    assert (colors == 255 * np.eye(3, dtype=np.uint8)[[0, 0, 1, 1, 2, 2]]).all()
+    # Pixels are weighed, not texels: the last one has a single column.
+    narrow = np.zeros((4, 17, 3), np.uint8)
+    narrow[:, 16] = (170, 17, 255)
+    colors = fill_colors(narrow, surfcast.Depth(4, np.ones((1, 5), np.float32)))
+    assert colors[[0, 2, 4]].tolist() == [[0, 0, 0], [10, 1, 15], [19, 2, 28]]
 
 
 def test_a_sharper_frame_at_rest_is_shown_where_it_agrees() -> None:

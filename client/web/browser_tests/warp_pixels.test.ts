@@ -187,9 +187,36 @@ describe('a frame', () => {
     const color = (_x: number, y: number): Rgb => (y < 90 ? [255, 0, 0] : [0, 255, 0]);
     const frame: Frame = { color, depth: () => 0.1, cell: 8, projection: camera() };
     const pixels = await warped(frame, undefined, turned(0.1)); // by about 25 pixels, and 36 at the border
-    expect(count(pixels, (_x, y, color) => (y < 85 ? !isRed(color) : y > 95 && !isGreen(color)))).toBe(0);
+    expect(count(pixels, (_x, y, color) => (y < 64 ? !isRed(color) : y > 112 && !isGreen(color)))).toBe(0);
     const open = await warped({ ...frame, depth: () => 0 }, undefined, turned(0.1));
     expect(count(open, (_x, _y, color) => `${color}` !== '0,0,0')).toBe(0);
+  });
+
+  it('is beyond its border its reflection, which is lost in the mean color of the border', async () => {
+    const color = (x: number): Rgb => (x % 16 < 8 ? [200, 200, 200] : [100, 100, 100]);
+    const target = turned(0.1);
+    const pixels = await warped({ color, depth: () => 0.1, cell: 8, projection: camera() }, undefined, target);
+    let compared = 0;
+    for (let x = 0.5; x < 320; ++x) {
+      const direction = Math.atan((x - 160) / 200) + 0.1;
+      const beyond = 160 + 200 * Math.tan(direction) - 320; // pixels of the frame
+      if (beyond < 0 || Math.abs(((beyond + 4) % 8) - 4) < 1.5) continue; // between two stripes
+      const reflected = color(320 - beyond)[0];
+      const kept = Math.max(0, 1 - beyond / 45) ** 2;
+      const level = pixels[3 * (90 * 320 + Math.floor(x))]!;
+      // The mean of the last three cells, of which two are dark.
+      expect(Math.abs(level - (kept * reflected + (1 - kept) * 133)), `column ${x}`).toBeLessThan(8);
+      compared += 1;
+    }
+    expect(compared).toBeGreaterThan(15);
+  });
+
+  it('fills what opens behind a surface with the mean color of what is behind', async () => {
+    const color = (x: number, y: number): Rgb =>
+      x > 112 && x < 208 && y > 48 && y < 128 ? [255, 0, 0] : (x + y) % 2 === 0 ? [0, 100, 0] : [0, 200, 0];
+    const pixels = await warped({ ...square, color }, undefined, camera(0.3)); // by 30 pixels, and the wall by 6
+    const opened = (x: number, y: number): boolean => x > 182 && x < 198 && y > 60 && y < 116;
+    expect(count(pixels, (x, y, [r, g, b]) => opened(x, y) && Math.abs(g - 150) + r + b > 6)).toBe(0);
   });
 
   it('is cut off before the eye, and not seen from behind', async () => {

@@ -99,9 +99,74 @@ void main() {
   result = vec4(color, 1.0);
 }`;
 
+/** A triangle that covers the target. */
+export const coverVertex = `#version 300 es
+void main() {
+  gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}`;
+
+/** The pixels of a cell, as a rectangle of `from` and `to`. */
+const cellPixels = `
+uniform vec2 size;
+uniform float cell;
+vec4 pixelsOf(ivec2 at) {
+  vec2 from = vec2(at) * cell;
+  return vec4(from, min(from + cell, size));
+}
+`;
+
+/** The mean colour of each cell. Between pixels a texture is the mean of four. */
+export const meanFragment = `#version 300 es
+precision highp float;
+uniform sampler2D picture;
+${cellPixels}
+out vec4 result;
+void main() {
+  vec4 pixels = pixelsOf(ivec2(gl_FragCoord.xy));
+  vec4 sum = vec4(0.0);
+  for (float y = pixels.y; y < pixels.w; y += 2.0) {
+    for (float x = pixels.x; x < pixels.z; x += 2.0) {
+      vec2 end = min(vec2(x, y) + 2.0, pixels.zw);
+      float count = (end.x - x) * (end.y - y);
+      sum += count * vec4(texture(picture, (vec2(x, y) + end) / (2.0 * size)).rgb, 1.0);
+    }
+  }
+  result = vec4(sum.rgb / sum.a, 1.0);
+}`;
+
 /**
- * What is made up lies behind another vertex, `farthest`, at a part of its inverse depth, in the colour of the pixel
- * `from`, or of the background if that is outside of the picture.
+ * For each cell the colour that continues its surface: the mean of cells up to two away whose inverse depths differ by
+ * no more than those of neighbours on one surface may.
+ */
+export const fillColorFragment = `#version 300 es
+precision highp float;
+uniform sampler2D means;
+uniform highp sampler2D depths;
+uniform float sameSurface;
+${cellPixels}
+out vec4 result;
+void main() {
+  ivec2 own = ivec2(gl_FragCoord.xy);
+  float here = texelFetch(depths, own, 0).r;
+  ivec2 last = textureSize(depths, 0) - 1;
+  vec4 sum = vec4(0.0);
+  for (int row = max(own.y - 2, 0); row <= min(own.y + 2, last.y); ++row) {
+    for (int column = max(own.x - 2, 0); column <= min(own.x + 2, last.x); ++column) {
+      ivec2 at = ivec2(column, row);
+      float there = texelFetch(depths, at, 0).r;
+      bool same = here == 0.0 || there == 0.0 ? here == there : abs(here - there) <= sameSurface * max(here, there);
+      vec4 pixels = pixelsOf(at);
+      float count = (pixels.z - pixels.x) * (pixels.w - pixels.y);
+      if (same) sum += count * vec4(texelFetch(means, at, 0).rgb, 1.0);
+    }
+  }
+  result = vec4(sum.rgb / sum.a, 1.0);
+}`;
+
+/**
+ * What is made up lies behind another vertex, `farthest`, at a part of its inverse depth. It continues the surface of
+ * the pixel `from`, or the background if that is outside of the picture. Up to `margin` pixels beyond the border, if
+ * that is not 0, it is the reflection of the picture, which is lost in that colour.
  */
 export const fillVertex = `#version 300 es
 ${depths}
@@ -109,29 +174,45 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 farthest;
 layout(location = 2) in vec2 from;
 uniform mat4 clip;
-uniform sampler2D picture;
+uniform sampler2D colors;
+uniform float cell;
 uniform vec2 size;
 uniform vec3 background;
 uniform float part;
+uniform float margin;
 out vec3 color;
+out vec2 place;
+out float reflected;
 void main() {
   vec4 at = clip * vec4(position.xy, 1.0, position.z);
   vec4 far = clip * vec4(farthest.xy, 1.0, farthest.z);
   float depth = min(1.0 - part * (1.0 - far.z / far.w), holeDepth);
   gl_Position = far.w > 0.0 ? vec4(at.xy, depth * at.w, at.w) : vec4(0.0, 0.0, 2.0, 1.0);
-  color = from.x < 0.0 ? background : textureLod(picture, from / size, 0.0).rgb;
+  ivec2 texel = min(ivec2(from / cell), textureSize(colors, 0) - 1);
+  color = from.x < 0.0 ? background : texelFetch(colors, texel, 0).rgb;
+  place = position.xy;
+  vec2 beyond = max(-place, place - size);
+  reflected = margin == 0.0 ? 0.0 : 1.0 - max(max(beyond.x, beyond.y), 0.0) / margin;
 }`;
 
 /** Whatever the layer above shows is better than what is made up. */
 export const fillFragment = (over: boolean): string => `${version(over)}
 precision highp float;
+uniform sampler2D picture;
+uniform vec2 size;
 in vec3 color;
+in vec2 place;
+in float reflected;
 out vec4 result;
 #ifdef OVER
 uniform sampler2D above;
 #endif
 void main() {
   result = vec4(color, 1.0);
+  if (reflected > 0.0) {
+    float share = min(reflected, 1.0);
+    result.rgb = mix(color, textureLod(picture, place / size, 0.0).rgb, share * share);
+  }
 #ifdef OVER
   vec4 other = texelFetch(above, ivec2(gl_FragCoord.xy), 0);
   if (other.a > 0.5) result = other;

@@ -24,13 +24,15 @@ export interface WarpMesh {
 /** Place of a vertex (x, y, inverse depth), what is behind (x, y; outside of the picture: background), 1 if near. */
 export const sheetFloats = 6;
 
-/** Place of a vertex (x, y, inverse depth), its farthest vertex (the same), and where the colour is taken (x, y). */
+/** Place of a vertex (x, y, inverse depth), its farthest vertex (the same), and whose surface goes on there (x, y). */
 export const fillFloats = 8;
 
 const maxCellVertices = 32; // of two sheets of four quarters
 
-const tolerance = 0.03; // relative step of inverse depth for each pixel, beyond which an edge is cut
-const margin = 0.25; // width of the surroundings, heights of the picture
+export const tolerance = 0.03; // relative step of inverse depth for each pixel, beyond which an edge is cut
+
+/** Width of the surroundings, pixels. */
+export const marginOf = ({ picture }: DepthPlane): number => picture.height / 4;
 
 export function meshOf(plane: DepthPlane): WarpMesh {
   return new MeshBuilder(new Lattice(plane)).mesh();
@@ -329,17 +331,21 @@ class MeshBuilder {
     indices.push(first, first + 1, first + 3, first, first + 3, first + 2);
   }
 
-  /** The colour is that of the farthest corner. */
+  /** The farthest corner goes on to those that are nearer to the nearest one. */
   private addFill(corners: readonly number[]): void {
     const { d } = this.lattice;
     const far = corners.reduce((best, corner) => (d[corner]! < d[best]! ? corner : best));
-    for (const corner of corners) this.addMadeUp(this.fills, corner, 0, 0, far, far);
+    const nearest = Math.max(...corners.map((corner) => d[corner]!));
+    for (const corner of corners) {
+      const inFront = nearest - d[corner]! <= d[corner]! - d[far]!;
+      this.addMadeUp(this.fills, corner, 0, 0, far, inFront ? far : corner);
+    }
   }
 
-  /** What a turning eye sees beyond the border has the colours of the border. */
+  /** What a turning eye sees beyond the border. */
   private addSurroundings(): void {
     const { columns, rows, plane } = this.lattice;
-    const width = margin * plane.picture.height;
+    const width = marginOf(plane);
     const bottom = (rows - 1) * columns;
     for (let i = 0; i + 1 < columns; ++i) {
       this.addStrip(i, i + 1, 0, -width);

@@ -3,7 +3,7 @@ import type { Rgb } from '../state/rgb';
 import type { DepthPlane } from './depth_plane';
 import * as shaders from './shaders';
 import { clipMatrix, rowMatrix, warpBetween } from './warp_camera';
-import { fillFloats, meshOf, sheetFloats, type WarpMesh } from './warp_mesh';
+import { fillFloats, marginOf, meshOf, sheetFloats, tolerance, type WarpMesh } from './warp_mesh';
 
 /** A frame that can be warped. */
 export interface WarpSource {
@@ -25,10 +25,12 @@ interface Range {
 /** A frame on the GPU. */
 interface Upload {
   readonly texture: WebGLTexture;
+  readonly colors: WebGLTexture; // that continue the surface of each cell
   readonly vertices: WebGLBuffer;
   readonly sheets: WebGLBuffer;
   readonly fills: WebGLBuffer; // surroundings and holes follow
-  readonly fillCount: number; // vertices, with those of surroundings
+  readonly fillCount: number; // vertices
+  readonly surroundingCount: number;
   readonly holeCount: number;
   readonly indices: WebGLBuffer;
   readonly surface: Range;
@@ -58,6 +60,8 @@ interface Programs {
   readonly alone: FramePrograms;
   readonly over: FramePrograms; // the layer above
   readonly background: WebGLProgram;
+  readonly means: WebGLProgram; // of the cells
+  readonly fillColors: WebGLProgram;
 }
 
 const reach = 20; // how much nearer than all surfaces of a frame the eye may come before they are cut off
@@ -109,8 +113,8 @@ export class WarpPainter {
     const upload = this.uploads.get(source);
     if (!upload) return;
     this.uploads.delete(source);
-    this.gl.deleteTexture(upload.texture);
-    const { vertices, sheets, fills, indices } = upload;
+    const { texture, colors, vertices, sheets, fills, indices } = upload;
+    for (const each of [texture, colors]) this.gl.deleteTexture(each);
     for (const buffer of [vertices, sheets, fills, indices]) this.gl.deleteBuffer(buffer);
   }
 
@@ -121,6 +125,7 @@ export class WarpPainter {
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
     this.programs ??= programsOf(gl);
+    for (const source of [below, above]) if (source) this.uploaded(source); // before the target's state is set
     gl.viewport(0, 0, width, height);
     gl.enable(gl.DEPTH_TEST);
     const nearest = 1 / (reach * Math.max(below.depth.last, above?.depth.last ?? 0));
@@ -195,10 +200,16 @@ export class WarpPainter {
     this.drawSheets(source, near, far, farBackground);
     gl.depthFunc(gl.LESS);
     this.use(fill, source, target, nearest);
+    this.bindTexture(fill, 'colors', 3, this.uploaded(source).colors);
+    gl.uniform1f(gl.getUniformLocation(fill, 'cell'), source.depth.cell);
     gl.uniform1f(gl.getUniformLocation(fill, 'part'), continued);
+    gl.uniform1f(gl.getUniformLocation(fill, 'margin'), 0);
     this.drawContinued(source);
     gl.uniform1f(gl.getUniformLocation(fill, 'part'), filled);
     this.drawFills(source);
+    gl.uniform1f(gl.getUniformLocation(fill, 'margin'), marginOf(source.depth));
+    this.drawSurroundings(source);
+    gl.uniform1f(gl.getUniformLocation(fill, 'margin'), 0);
   }
 
   private drawBackground(source: WarpSource): void {
@@ -233,10 +244,17 @@ export class WarpPainter {
   }
 
   /** After the fills, by their program. */
+  private drawSurroundings(source: WarpSource): void {
+    const upload = this.uploaded(source);
+    this.bindFills(upload);
+    this.gl.drawArrays(this.gl.TRIANGLES, upload.fillCount, upload.surroundingCount);
+  }
+
+  /** After the fills, by their program. */
   private drawHoles(source: WarpSource): void {
     const upload = this.uploaded(source);
     this.bindFills(upload);
-    this.gl.drawArrays(this.gl.TRIANGLES, upload.fillCount, upload.holeCount);
+    this.gl.drawArrays(this.gl.TRIANGLES, upload.fillCount + upload.surroundingCount, upload.holeCount);
   }
 
   private bindFills({ fills }: Upload): void {
@@ -287,9 +305,43 @@ export class WarpPainter {
   private uploaded(source: WarpSource): Upload {
     const known = this.uploads.get(source);
     if (known) return known;
-    const upload = uploadOf(this.gl, source.bitmap, meshOf(source.depth));
+    const texture = pictureTexture(this.gl, source.bitmap);
+    const colors = this.fillColors(source.depth, texture);
+    const upload = { texture, colors, ...buffersOf(this.gl, meshOf(source.depth)) };
     this.uploads.set(source, upload);
     return upload;
+  }
+
+  /** A texel for each cell of a picture: the colour that continues its surface. */
+  private fillColors(depth: DepthPlane, picture: WebGLTexture): WebGLTexture {
+    const { gl } = this;
+    const { width, height } = depth;
+    const depths = textureOf(gl, gl.NEAREST);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32F, width, height, 0, gl.RED, gl.FLOAT, depth.values);
+    const [means, colors] = [cellTexture(gl, width, height), cellTexture(gl, width, height)];
+    const { means: ofCells, fillColors } = this.programs!;
+    const framebuffer = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.viewport(0, 0, width, height);
+    gl.disable(gl.DEPTH_TEST);
+    for (const location of [0, 1, 2]) gl.disableVertexAttribArray(location);
+    const cover = (program: WebGLProgram, target: WebGLTexture): void => {
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+      gl.uniform2f(gl.getUniformLocation(program, 'size'), depth.picture.width, depth.picture.height);
+      gl.uniform1f(gl.getUniformLocation(program, 'cell'), depth.cell);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    };
+    gl.useProgram(ofCells);
+    this.bindTexture(ofCells, 'picture', 0, picture);
+    cover(ofCells, means);
+    gl.useProgram(fillColors);
+    this.bindTexture(fillColors, 'means', 0, means);
+    this.bindTexture(fillColors, 'depths', 1, depths);
+    gl.uniform1f(gl.getUniformLocation(fillColors, 'sameSurface'), tolerance * depth.cell);
+    cover(fillColors, colors);
+    gl.deleteFramebuffer(framebuffer);
+    for (const texture of [depths, means]) gl.deleteTexture(texture);
+    return colors;
   }
 
   private targetOf(width: number, height: number): LayerTarget {
@@ -309,18 +361,29 @@ function rangesOf(parts: readonly Uint32Array[]): Range[] {
   return parts.map(({ length: count }) => ({ first: (first += count) - count, count }));
 }
 
-function uploadOf(gl: WebGL2RenderingContext, bitmap: ImageBitmap, mesh: WarpMesh): Upload {
-  const texture = textureOf(gl, gl.LINEAR);
+/** Beyond its border it is its reflection. */
+function pictureTexture(gl: WebGL2RenderingContext, bitmap: ImageBitmap): WebGLTexture {
+  const texture = textureOf(gl, gl.LINEAR, gl.MIRRORED_REPEAT);
   gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
+  return texture;
+}
+
+function cellTexture(gl: WebGL2RenderingContext, width: number, height: number): WebGLTexture {
+  const texture = textureOf(gl, gl.NEAREST);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, width, height);
+  return texture;
+}
+
+function buffersOf(gl: WebGL2RenderingContext, mesh: WarpMesh): Omit<Upload, 'texture' | 'colors'> {
   const parts = [mesh.surface, mesh.background, mesh.near, mesh.far, mesh.farBackground];
   const [surface, background, near, far, farBackground] = rangesOf(parts) as [Range, Range, Range, Range, Range];
   return {
-    texture,
     vertices: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.vertices]),
     sheets: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.sheets]),
     fills: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.fills, mesh.surroundings, mesh.holes]),
-    fillCount: (mesh.fills.length + mesh.surroundings.length) / fillFloats,
+    fillCount: mesh.fills.length / fillFloats,
+    surroundingCount: mesh.surroundings.length / fillFloats,
     holeCount: mesh.holes.length / fillFloats,
     indices: bufferOf(gl, gl.ELEMENT_ARRAY_BUFFER, parts),
     ...{ surface, background, near, far, farBackground },
@@ -328,12 +391,12 @@ function uploadOf(gl: WebGL2RenderingContext, bitmap: ImageBitmap, mesh: WarpMes
 }
 
 /** Bound to the first unit, so that those of the layer above stay bound to theirs. */
-function textureOf(gl: WebGL2RenderingContext, filter: GLenum): WebGLTexture {
+function textureOf(gl: WebGL2RenderingContext, filter: GLenum, wrap: GLenum = gl.CLAMP_TO_EDGE): WebGLTexture {
   const texture = gl.createTexture();
   gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D, texture);
   for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, filter);
-  for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
+  for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, wrap);
   return texture;
 }
 
@@ -379,6 +442,8 @@ function programsOf(gl: WebGL2RenderingContext): Programs {
     alone: ofFrames(false),
     over: ofFrames(true),
     background: programOf(gl, shaders.backgroundVertex, shaders.backgroundFragment),
+    means: programOf(gl, shaders.coverVertex, shaders.meanFragment),
+    fillColors: programOf(gl, shaders.coverVertex, shaders.fillColorFragment),
   };
 }
 
