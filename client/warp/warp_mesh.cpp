@@ -272,6 +272,8 @@ class MeshBuilder {
       nearest = std::max(nearest, outline(at).near);
       if (outline(at).far < inverse(farthest)) farthest = outline(at).far_at;
     }
+    // Between a surface and background there would be a needle, as long as the eye moves.
+    const bool open = inverse(farthest) == 0;
     MeshTriangle near = triangle;
     MeshTriangle far = triangle;
     near.sheet = Sheet::kNear;
@@ -283,7 +285,7 @@ class MeshBuilder {
       const bool in_front = nearest - own <= own - inverse(farthest);
       near.corners.at(i).front = far.corners.at(i).front = in_front ? 1.0F : 0.0F;
       near.corners.at(i).inverse = corner.beside ? corner.near : (in_front ? own : nearest);
-      const glm::ivec2 behind = corner.beside ? corner.far_at : (in_front ? farthest : at);
+      const glm::ivec2 behind = open ? farthest : corner.beside ? corner.far_at : in_front ? farthest : at;
       far.corners.at(i).inverse = inverse(behind);
       far.corners.at(i).continued = grid_.texel(behind);
     }

@@ -1,6 +1,7 @@
 #include "warp/warp_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -120,6 +121,22 @@ TEST(WarpMesh, BackgroundIsInfinitelyFarAndAnOutlineBesideEverySurface) {
     if (triangle.sheet != Sheet::kSurface) continue;
     for (const MeshVertex& vertex : triangle.corners) EXPECT_EQ(vertex.inverse == 0, triangle.background);
   }
+}
+
+TEST(WarpMesh, BehindASurfaceNoTriangleJoinsAnotherOneAndBackground) {
+  const auto square = [](double x, double y) { return x > 40 && x < 80 && y > 24 && y < 48; };
+  const WarpMesh mesh =
+      make_warp_mesh(plane_of([&](double x, double y) { return square(x, y) ? 1.0F : (x + y < 100 ? 0.2F : 0.0F); }),
+                     kMeshedWidth, kMeshedHeight);
+  std::array<int, 2> triangles{};
+  for (const MeshTriangle& triangle : mesh) {
+    if (triangle.sheet != Sheet::kFar) continue;
+    const auto open = std::ranges::count(triangle.corners, 0.0F, &MeshVertex::inverse);
+    EXPECT_TRUE(open == 0 || open == 3) << triangle.corners[0].pixel.x << " " << triangle.corners[0].pixel.y;
+    ++triangles.at(open == 0 ? 0 : 1);
+  }
+  EXPECT_GT(triangles[0], 10);
+  EXPECT_GT(triangles[1], 10);
 }
 
 TEST(WarpMesh, OfAFrameOfOneCellIsASheet) {

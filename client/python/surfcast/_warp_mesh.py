@@ -183,10 +183,13 @@ def _sheets(grid: _Grid) -> list[WarpMesh]:
     farthest = np.where(beside, far, np.inf).min(axis=1, keepdims=True)
     in_front = nearest - inverse <= inverse - farthest
     in_near = np.where(beside, near, np.where(in_front, inverse, nearest))
-    in_far = np.where(beside, far, np.where(in_front, farthest, inverse))
+    # Between a surface and background there would be a needle, as long as the eye moves.
+    beyond = farthest == 0
+    in_far = np.where(beyond, 0, np.where(beside, far, np.where(in_front, farthest, inverse)))
     # The farthest of the vertices beside an outline goes on to those that are not, if they are in front.
     last = np.where(beside, far, np.inf).argmin(axis=1)[:, None]
-    behind = np.where(beside, far_at, np.where(in_front, np.take_along_axis(far_at, last, axis=1), corners))
+    farthest_at = np.take_along_axis(far_at, last, axis=1)
+    behind = np.where(beyond | (in_front & ~beside), farthest_at, np.where(beside, far_at, corners))
 
     def sheet(kind: Sheet, inverse: _A, front: _A, continued: _A, chosen: _A) -> WarpMesh:
         kinds = np.full(len(corners), kind)

@@ -16,6 +16,7 @@ import surfcast
 from surfcast._fill_colors import fill_colors
 from surfcast._picture import picture_from
 from surfcast._warp import _Lens
+from surfcast._warp_mesh import Sheet, make_warp_mesh
 from surfcast._wire import surfcast_pb2 as wire
 
 SIZE = (320, 200)
@@ -186,6 +187,15 @@ def test_beyond_the_border_is_a_reflection_that_is_lost_in_the_mean_of_the_borde
     expected = kept * shown[column] + (1 - kept) * 150
     assert plain.sum() > 20
     assert np.abs(warped - expected)[plain].max() <= 12
+
+
+def test_behind_a_surface_no_triangle_joins_another_one_and_background() -> None:
+    x, y = np.meshgrid(np.arange(16), np.arange(9))
+    near = (x > 4) & (x < 10) & (y > 2) & (y < 6)
+    inverse = np.where(near, 1, np.where(x + y < 12, 0.2, 0)).astype(np.float32)
+    mesh = make_warp_mesh(surfcast.Depth(CELL, inverse), (128, 72))
+    opened = (mesh.inverse[mesh.sheet == Sheet.FAR] == 0).sum(axis=1)
+    assert set(opened) == {0, 3}
 
 
 def test_colors_that_go_on_do_not_mix_surfaces() -> None:

@@ -159,6 +159,15 @@ describe('the mesh of a plane of depth', () => {
   });
 
   const inSquare = (x: number, y: number): boolean => x > 100 && x < 200 && y > 60 && y < 120;
+  it('joins behind a surface no other one and the background', () => {
+    const mesh = meshOf(
+      planeOf({ width: 320, height: 180 }, 4, (x, y) => (inSquare(x, y) ? 0.5 : x + y < 240 ? 0.1 : 0)),
+    );
+    const depths = (list: Uint32Array): number[] => sheets(mesh, list).flatMap((one) => one.map(([, , d]) => d));
+    expect(Math.min(...depths(mesh.far))).toBeCloseTo(0.1, 6);
+    expect(new Set(depths(mesh.farBackground))).toEqual(new Set([0]));
+  });
+
   for (const [what, far] of [['a plane', 0.1], ['the background', 0]] as const) {
     it(`of a square before ${what} is cut on its outline alone`, () => {
       const size = { width: 320, height: 180 };

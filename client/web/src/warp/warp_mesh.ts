@@ -306,9 +306,11 @@ class MeshBuilder {
   private farDepths([own, beside, over]: Corners, cutBeside: number, cutOver: number): Corners {
     const { d } = this.lattice;
     const depth = d[this.behind[own]!]!;
+    // Between a surface and background there would be a needle, as long as the eye moves.
+    const halfTo = (far: number): number => (depth === 0 || far === 0 ? 0 : (far - depth) / 2);
     const half = (other: number, cut: number): number => {
-      if (cut !== 0) return d[other]! < d[own]! ? (d[other]! - depth) / 2 : 0;
-      return this.behind[other]! < 0 ? 0 : (d[this.behind[other]!]! - depth) / 2;
+      if (cut !== 0) return d[other]! < d[own]! ? halfTo(d[other]!) : 0;
+      return this.behind[other]! < 0 ? 0 : halfTo(d[this.behind[other]!]!);
     };
     const [toBeside, toOver] = [half(beside, cutBeside), half(over, cutOver)];
     return [depth, depth + toBeside, depth + toOver, depth + toBeside + toOver];
