@@ -46,6 +46,12 @@ TEST(QuantizerTest, FollowsACollapseAtOnce) {
   EXPECT_LE(codec.bytes(quantizer_for(model, 4'000, kPixels)), 4'000 * 1.1);
 }
 
+TEST(QuantizerTest, IsCoarserForAPictureThatHasBecomeLarger) {
+  const SizeModel model{-1, 0.1};
+  const SizeModel larger = sizes_of_larger(model);
+  EXPECT_EQ(quantizer_for(larger, 1000, 100'000), quantizer_for(model, 1000, 100'000) + 6) << "0.6 of 0.1 each";
+}
+
 TEST(QuantizerTest, StaysWithinThoseOfTheCodec) {
   EXPECT_EQ(quantizer_for({10, 0.11}, 1, kPixels), kCoarsestQuantizer);
   EXPECT_EQ(quantizer_for({10, 0.07}, 0, kPixels), kCoarsestQuantizer);

@@ -1,5 +1,8 @@
 #include "video/video_stream.h"
 
+#include <cmath>
+#include <cstddef>
+
 #include <gtest/gtest.h>
 
 #include "video/pictures.h"
@@ -72,6 +75,29 @@ TEST_F(VideoStreamTest, KeepsToTheBytes) {
     sum += static_cast<double>(size);
   }
   EXPECT_GT(sum / kFrames, 3000);
+}
+
+TEST_F(VideoStreamTest, ALargerPictureIsCodedMoreCoarsely) {
+  // Grain, of which each picture takes as many bytes as the one before.
+  const picture::Image grain = noise(320, 192, 1);
+  const auto seen = [&](int width, int height, int shift) {
+    return image_of(width, height, [&](int x, int y, int channel) {
+      const int column = (x * 320 / width + shift) % 320;
+      const int row = y * 192 / height;
+      const auto level = std::to_integer<int>(grain.pixels[static_cast<size_t>((row * 320 + column) * 4 + channel)]);
+      return 127 + (level - 127) / 4 + std::lround(60 * std::sin(column * 0.05 + channel));
+    });
+  };
+  uint64_t frame = 0;
+  const auto encode_next = [&](int width) {
+    ++frame;
+    return encode(seen(width, width * 3 / 5, static_cast<int>(frame)), frame, 6000).bytes.size();
+  };
+  for (int i = 0; i < 15; ++i) encode_next(200);
+  for (const int width : {240, 280, 320}) {
+    EXPECT_LE(encode_next(width), 4500U) << width << ": what is not in the smaller one may take as much again";
+    for (int i = 0; i < 15; ++i) encode_next(width);
+  }
 }
 
 TEST_F(VideoStreamTest, FollowsFewerBytesWithTheNextFrame) {

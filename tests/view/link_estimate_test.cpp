@@ -230,6 +230,20 @@ TEST_F(NowEstimate, TheRoundTripStaysKnownWhenALineBecomesSlowAndFastAgain) {
   }
 }
 
+TEST(LinkEstimate, TheTransferOfTheQuickestMessageDoesNotCountAsTheWay) {
+  // 12 ms of 500 bytes, then 32 ms of them. The quickest message took 92 ms, of which 80 are the way.
+  LinkEstimate estimate;
+  Line line(500, 80);
+  for (int i = 0; i < 60; ++i) {
+    line.pass(50);
+    line.send(estimate, i < 10 ? 6000 : 16'000);
+    line.acknowledge(estimate);
+  }
+  const auto bytes_a_ms = static_cast<double>(*estimate.bytes_now_in(1000, line.now())) / 1000;
+  EXPECT_GT(bytes_a_ms, 500);
+  EXPECT_LT(bytes_a_ms, 700);
+}
+
 TEST_F(NowEstimate, MessagesThatWaitForOthersTellTheRate) {
   for (int i = 0; i < 3; ++i) line_.send(estimate_, 12'000);
   for (int i = 0; i < 3; ++i) line_.acknowledge(estimate_);

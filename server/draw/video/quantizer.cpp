@@ -22,6 +22,11 @@ SizeModel sizes_after_key(int quantizer, double bytes, double pixels) {
   return {complexity_of(kSteepness, quantizer, bytes, pixels), kSteepness};
 }
 
+SizeModel sizes_of_larger(const SizeModel& model) {
+  constexpr double kMore = 0.6;
+  return {model.complexity + kMore, model.steepness};
+}
+
 int quantizer_for(const SizeModel& model, double bytes, double pixels) {
   const double wanted = (model.complexity - std::log2(std::max(bytes, 1.0) / pixels)) / model.steepness;
   return static_cast<int>(std::ceil(std::clamp<double>(wanted, kFinestWorthwhile, kCoarsestQuantizer)));

@@ -17,6 +17,10 @@ inline constexpr SizeModel kFirstKeySizes{-2.5, 0.07};
 /// Of the frames that refer to others, after the first key frame: they take no more than that.
 SizeModel sizes_after_key(int quantizer, double bytes, double pixels);
 
+/// Of a picture that is larger than the one it refers to: what only it can show was not there before. A fifth or a
+/// quarter more width takes 0.5 to 0.9 more.
+SizeModel sizes_of_larger(const SizeModel& model);
+
 /// The finest quantizer with which a picture of so many pixels is expected to take at most `bytes`.
 int quantizer_for(const SizeModel& model, double bytes, double pixels);
 

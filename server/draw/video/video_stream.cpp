@@ -112,7 +112,8 @@ Result<CodedPicture> VideoStream::encode_key(const picture::Image& image, size_t
 }
 
 Result<CodedPicture> VideoStream::encode_next(const picture::Image& image, size_t bytes) {
-  const int quantizer = quantizer_for(*sizes_, static_cast<double>(bytes), pixels_of(image));
+  const SizeModel sizes = pixels_of(image) > last_pixels_ ? sizes_of_larger(*sizes_) : *sizes_;
+  const int quantizer = quantizer_for(sizes, static_cast<double>(bytes), pixels_of(image));
   return encode_with(image, quantizer, /*key=*/false);
 }
 
@@ -124,6 +125,7 @@ Result<CodedPicture> VideoStream::encode_with(const picture::Image& image, int q
 }
 
 void VideoStream::learn(int quantizer, double bytes, double pixels, bool key) {
+  last_pixels_ = pixels;
   if (!key) {
     sizes_ = learned(*sizes_, quantizer, bytes, pixels);
     return;

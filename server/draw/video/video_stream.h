@@ -62,6 +62,7 @@ class VideoStream {
   std::atomic<bool> restart_ = true;
   SizeModel key_sizes_ = kFirstKeySizes;
   std::optional<SizeModel> sizes_;  ///< of other frames; none before the first key frame
+  double last_pixels_ = 0;          ///< of the last image
   uint64_t last_frame_ = 0;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kSamples = 24;
 constexpr double kLarger = 1.5;  // times the bytes of the quickest message; smaller ones are of its size
-constexpr size_t kElapsed = 256;
+constexpr size_t kTimed = 256;
 constexpr double kNewShare = 0.3;  // weight of a new slope against the previous estimate
 
 double milliseconds_between(ViewTime from, ViewTime to) {
@@ -75,14 +75,16 @@ void LinkEstimate::learn(const Sample& sample) {
   }
 }
 
-/// What the time of a message allows at most: it took the least time of any message, which is no less than the round
-/// trip, and then its own transfer. One that waited for the one before was transferred since that had arrived.
+/// What the time of a message allows at most: it took the time of the quickest message, and then the transfer of what
+/// it has more than that. One of about the same size tells nothing of the quickest one's own transfer, so that all of
+/// it counts. One that waited for the one before was transferred since that had arrived.
 double LinkEstimate::most_bytes_per_ms(double bytes, double elapsed, double since_arrival) const {
   constexpr double kNoise = 5;  // ms by which times of messages vary for other reasons
   constexpr double kMinMs = 0.5;
-  const double least = least_elapsed_ms();
-  const double waited = elapsed - since_arrival;
-  return bytes / std::max(waited > least ? since_arrival : elapsed - least - kNoise, kMinMs);
+  const Timed quickest = quickest_message();
+  if (elapsed - since_arrival > quickest.elapsed) return bytes / std::max(since_arrival, kMinMs);
+  const double common = std::clamp(bytes - quickest.bytes, 0.0, quickest.bytes);
+  return (bytes - common) / std::max(elapsed - quickest.elapsed - kNoise, kMinMs);
 }
 
 /// The rate grows step by step, up to what the better one of the last two messages allows. Small messages are no
@@ -92,8 +94,8 @@ void LinkEstimate::learn_rate_now(const Message& message, ViewTime arrival) {
   constexpr double kEvidenceMs = 8;  // of the link, that a message takes at least
   const auto bytes = static_cast<double>(message.bytes);
   const double elapsed = milliseconds_between(message.sent, arrival);
-  elapsed_.push_back(elapsed);
-  if (elapsed_.size() > kElapsed) elapsed_.pop_front();
+  timed_.push_back({bytes, elapsed});
+  if (timed_.size() > kTimed) timed_.pop_front();
   if (!last_arrival_) {
     last_most_ = bytes_per_ms_now_ = bytes / std::max(elapsed, 1.0);
     return;
@@ -117,8 +119,12 @@ std::optional<size_t> LinkEstimate::bytes_now_in(double milliseconds, ViewTime n
   return static_cast<size_t>(std::min(milliseconds * bytes_per_ms, kMax));
 }
 
+LinkEstimate::Timed LinkEstimate::quickest_message() const {
+  return timed_.empty() ? Timed{} : *std::ranges::min_element(timed_, {}, &Timed::elapsed);
+}
+
 double LinkEstimate::least_elapsed_ms() const {
-  return elapsed_.empty() ? 0 : *std::ranges::min_element(elapsed_);
+  return quickest_message().elapsed;
 }
 
 double LinkEstimate::transfer_ms(size_t bytes) const {

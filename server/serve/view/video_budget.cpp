@@ -19,7 +19,7 @@ double relative_bytes(int quality) {
 }  // namespace
 
 double video_frame_ms(double fps) {
-  constexpr double kMax = 17;     // and up to as much again, because the rate is estimated too high
+  constexpr double kMax = 16;     // and up to half more, because the rate is estimated too high
   constexpr double kShare = 0.8;  // of the time between two frames
   return std::min(kMax, kShare * 1000 / fps);
 }

@@ -31,6 +31,7 @@ constexpr int kTexelsInMotion = 80;
 constexpr size_t kDepthBytesAtRest = 6000;
 constexpr size_t kDepthBytesInMotion = 3000;
 constexpr size_t kLatencies = 5;
+constexpr double kLateMs = 100;  // of a message beyond its round trip
 // Clients that warp need no frame for each of the display's: fewer and sharper ones are nearer to the truth. Frames of
 // the best quality are drawn as often as the device can.
 constexpr double kWarpedRate = 0.4;
@@ -221,7 +222,6 @@ void ViewSession::drop(uint64_t frame) {
 /// The messages that may be unacknowledged. Frames that are warped may be some round trips old, so that a long way
 /// takes no frames from the client: as many are sent as fit on the way, while all that was sent arrives in time.
 size_t ViewSession::window(ViewTime now) const {
-  constexpr double kLateMs = 100;
   // Packets of one size do not tell the rate from the round trip.
   const double round_trip = is_video_ ? link_.least_elapsed_ms() : link_.round_trip_ms();
   const double milliseconds = round_trip + kLateMs;
@@ -481,17 +481,20 @@ void ViewSession::acknowledge(uint64_t frame, double client_ms, ViewTime now) {
   Job& job = found->second;
   --job.unacknowledged;
   plan_.acknowledge(job.kind);
+  const bool late = link_.waits_ms(now) > link_.least_elapsed_ms() + kLateMs;
   const std::optional<double> transfer = link_.acknowledge(frame, client_ms, now);
   if (job.kind == FrameKind::kMotion && job.sent) latencies_.push_back(now - job.begun);
   if (latencies_.size() > kLatencies) latencies_.pop_front();
-  if (job.kind == FrameKind::kMotion && transfer) adapt_quality(job, *transfer, client_ms);
+  if (job.kind == FrameKind::kMotion && transfer) adapt_quality(job, *transfer, client_ms, late);
   erase_if_done(frame);
 }
 
-void ViewSession::adapt_quality(Job& job, double transfer_ms, double client_ms) {
+void ViewSession::adapt_quality(Job& job, double transfer_ms, double client_ms, bool late) {
   job.cost.transfer = transfer_ms;
   job.cost.client = client_ms;
   last_cost_ = job.cost;
+  // While frames are late, few are drawn, and each in less time: no evidence that larger ones would be in time.
+  if (job.video && late) return;
   // A frame drawn with an earlier quality is no evidence about the current one.
   const bool current = job.quality.draw.rung == quality_.draw.rung && job.quality.link.rung == quality_.link.rung;
   if (current) quality_ = (job.video ? adapt_drawing : adapt)(quality_, job.cost, motion_fps());
