@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "base/result.h"
@@ -16,6 +17,13 @@ struct DepthPlane {
   std::vector<float> inverse;  ///< 1 / depth of the nearest surface, per world unit; 0: background
   bool seen_through = false;   ///< pixels may show things at several depths
 };
+
+/// The most by which the inverse depths of two texels beside each other may differ on one surface: 3 % of the larger
+/// one for each pixel of a side.
+inline float surface_step(float a, float b, int cell) {
+  constexpr float kStepPerPixel = 0.03F;
+  return kStepPerPixel * static_cast<float>(cell) * std::max(a, b);
+}
 
 /// The depth of a frame whose picture has `width` x `height` pixels. Fails where it does not fit to the picture, and
 /// where it is damaged. A plane has at most 2^20 texels.

@@ -9,9 +9,6 @@ namespace surfcast::warp {
 namespace {
 
 constexpr int kReach = 2;  // texels
-// Texels are on one surface if their inverse depths differ by at most this part of the larger one for each pixel of a
-// side, as those of neighbours in a mesh. (More for texels farther away would join surfaces that a mesh has cut.)
-constexpr float kStepPerPixel = 0.03F;
 
 struct Sum {
   std::array<uint64_t, 3> channels{};
@@ -46,9 +43,10 @@ std::vector<Sum> sums_of(const Pixels& pixels, const DepthPlane& depth) {
   return sums;
 }
 
+/// Also of texels farther apart: a larger tolerance would join surfaces that a mesh has cut.
 bool same_surface(float a, float b, int cell) {
   if (a == 0 || b == 0) return a == b;
-  return std::abs(a - b) <= kStepPerPixel * static_cast<float>(cell) * std::max(a, b);
+  return std::abs(a - b) <= surface_step(a, b, cell);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace surfcast::warp {
 
-/// For each texel of a frame's depth, the colour that continues its surface where the frame does not show it: the mean
-/// of the pixels up to two texels around that lie on the same surface.
+/// For each texel of a frame's depth, the colour with which holes beside its surface are filled: the mean of the pixels
+/// of that surface up to two texels around.
 std::vector<Color> fill_colors(const Pixels& pixels, const DepthPlane& depth);
 
 }  // namespace surfcast::warp

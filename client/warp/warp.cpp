@@ -126,8 +126,8 @@ struct ScreenTriangle {
   Plane pixel_x;               ///< of the frame
   Plane pixel_y;
   Plane front;
-  std::array<Plane, 3> continued;  ///< channels of what goes on unseen
-  int left = 0;                    ///< pixels whose centres may be inside
+  std::array<Plane, 3> fill;  ///< channels of the fill colour
+  int left = 0;               ///< pixels whose centres may be inside
   int right = 0;
   int top = 0;
   int bottom = 0;
@@ -186,8 +186,8 @@ std::optional<ScreenTriangle> screen_triangle(const MeshTriangle& mesh, const st
     triangle.pixel_y.add(part, share * corner.pixel.y);
     triangle.front.add(part, share * corner.front);
     if (mesh.sheet != Sheet::kSurface && mesh.sheet != Sheet::kNear) {
-      const Color color = fill_colors[mesh.corners.at(i).continued];
-      for (size_t c = 0; c < 3; ++c) triangle.continued.at(c).add(part, share * channel(color, static_cast<int>(c)));
+      const Color color = fill_colors[mesh.corners.at(i).fill_texel];
+      for (size_t c = 0; c < 3; ++c) triangle.fill.at(c).add(part, share * channel(color, static_cast<int>(c)));
     }
     farthest = std::min(farthest, share * corner.inverse);
   }
@@ -234,30 +234,30 @@ struct Place {
   size_t at = 0;  ///< pixel of the target
   float x = 0;    ///< pixel of the frame
   float y = 0;
-  float inverse = 0;    ///< in the target
-  float front = 0;      ///< as in MeshVertex
-  Color continued = 0;  ///< what goes on unseen
+  float inverse = 0;  ///< in the target
+  float front = 0;    ///< as in MeshVertex
+  Color fill = 0;     ///< colour where the frame does not show this surface
 };
 
-/// Beyond the border of a frame: its reflection, which is lost in the mean colour of the border.
+/// Beyond the border of a frame: its reflection, which fades to the fill colour of the border.
 Color surroundings(const Pixels& pixels, const Place& place) {
   const auto reflected = [](float at, int size) {
     return at < 0 ? -at : std::min(at, 2 * static_cast<float>(size) - at);
   };
   const Color reflection = sample(pixels, reflected(place.x, pixels.width), reflected(place.y, pixels.height));
   const float share = place.front > 0 ? std::min(place.front, 1.0F) : 0;  // also where it is NaN
-  return mixed(place.continued, reflection, static_cast<uint32_t>(256 * share * share));
+  return mixed(place.fill, reflection, static_cast<uint32_t>(256 * share * share));
 }
 
 Shown shown(const Pixels& pixels, const ScreenTriangle& triangle, const Place& place) {
   const Sheet sheet = triangle.mesh->sheet;
-  if (sheet == Sheet::kFill) return {place.continued, false};
+  if (sheet == Sheet::kFill) return {place.fill, false};
   if (sheet == Sheet::kSurroundings) return {surroundings(pixels, place), false};
   const Color color = sample(pixels, place.x, place.y);
   if (sheet == Sheet::kSurface) return {color, true};
   const bool in_front = place.front >= 0.5F && distance(color, triangle.far) >= kSameColor;
   if (sheet == Sheet::kNear) return {color, in_front};
-  return in_front ? Shown{place.continued, false} : Shown{color, true};
+  return in_front ? Shown{place.fill, false} : Shown{color, true};
 }
 
 /// Rows of the target that are drawn together.
@@ -283,6 +283,7 @@ std::pair<int, int> columns_inside(const ScreenTriangle& triangle, double y) {
   return {static_cast<int>(std::ceil(first - 0.5)), static_cast<int>(std::floor(last - 0.5)) + 1};
 }
 
+/// The colour of three channels at a pixel.
 Color color_of(const std::array<Plane, 3>& channels, double x, double y, double w) {
   Color color = 0;
   for (size_t i = 0; i < 3; ++i) {
@@ -300,7 +301,7 @@ void for_each_place(const ScreenTriangle& triangle, const Band& band, int width,
                     const Draw& draw) {
   const Sheet sheet = triangle.mesh->sheet;
   const bool made_up = sheet == Sheet::kFill || sheet == Sheet::kSurroundings;
-  const bool continued = made_up || sheet == Sheet::kFar;
+  const bool filled = made_up || sheet == Sheet::kFar;
   const int bottom = std::min(triangle.bottom, band.bottom);
   for (int row = std::max(triangle.top, band.top); row < bottom; ++row) {
     const double y = row + 0.5;
@@ -315,7 +316,7 @@ void for_each_place(const ScreenTriangle& triangle, const Band& band, int width,
       place.x = static_cast<float>(triangle.pixel_x.at(x, y) / w);
       place.y = static_cast<float>(triangle.pixel_y.at(x, y) / w);
       place.front = static_cast<float>(triangle.front.at(x, y) / w);
-      if (continued) place.continued = color_of(triangle.continued, x, y, w);
+      if (filled) place.fill = color_of(triangle.fill, x, y, w);
       draw(place);
     }
   }

@@ -8,11 +8,7 @@
 namespace surfcast::warp {
 namespace {
 
-// An edge is cut if the inverse depths of its ends differ by more than this part of the larger one for each pixel
-// between them, and neither of the slopes beside it explains that.
-constexpr float kStepPerPixel = 0.03F;
-
-// Width of what is continued beyond the border, heights of the frame.
+// Width of the surroundings beyond the border, heights of the frame.
 constexpr float kSurroundings = 0.25F;
 
 /// The texels of a plane with a ring around them, whose vertices lie on the border of the frame.
@@ -57,7 +53,7 @@ class Grid {
     const float a = inverse(x, y);
     const float b = inverse(x + dx, y + dy);
     if (a == 0 || b == 0) return a != b;
-    const float tolerance = kStepPerPixel * static_cast<float>(cell_) * std::max(a, b);
+    const float tolerance = surface_step(a, b, cell_);
     const float step = b - a;
     if (std::abs(step) <= tolerance) return false;
     return !explained(step, tolerance, x - dx, y - dy, x, y) &&
@@ -136,14 +132,13 @@ class Grid {
 /// What outlines beside a vertex separate. Away from them, both sheets are its own depth.
 struct Outline {
   bool beside = false;
-  float near = 0;  ///< inverse depths
-  float far = 0;
+  float near = 0;        ///< inverse depth of the surface in front
   glm::ivec2 far_at{0};  ///< the vertex that is behind
 };
 
 Outline outline_at(const Grid& grid, const glm::ivec2& at) {
   Outline outline;
-  outline.near = outline.far = grid.inverse(at.x, at.y);
+  outline.near = grid.inverse(at.x, at.y);
   outline.far_at = at;
   for (const glm::ivec2& step : {glm::ivec2(-1, 0), glm::ivec2(1, 0), glm::ivec2(0, -1), glm::ivec2(0, 1)}) {
     const glm::ivec2 other = at + step;
@@ -151,10 +146,7 @@ Outline outline_at(const Grid& grid, const glm::ivec2& at) {
     outline.beside = true;
     const float there = grid.inverse(other.x, other.y);
     outline.near = std::max(outline.near, there);
-    if (there < outline.far) {
-      outline.far = there;
-      outline.far_at = other;
-    }
+    if (there < grid.inverse(outline.far_at.x, outline.far_at.y)) outline.far_at = other;
   }
   return outline;
 }
@@ -226,8 +218,8 @@ class MeshBuilder {
   void add_strip(const glm::ivec2& a, const glm::ivec2& b, const glm::vec2& outwards) {
     const MeshVertex from{grid_.pixel(a.x, a.y), grid_.inverse(a.x, a.y), 1, grid_.texel(a)};
     const MeshVertex to{grid_.pixel(b.x, b.y), grid_.inverse(b.x, b.y), 1, grid_.texel(b)};
-    const MeshVertex from_outside{from.pixel + outwards, from.inverse, 0, from.continued};
-    const MeshVertex to_outside{to.pixel + outwards, to.inverse, 0, to.continued};
+    const MeshVertex from_outside{from.pixel + outwards, from.inverse, 0, from.fill_texel};
+    const MeshVertex to_outside{to.pixel + outwards, to.inverse, 0, to.fill_texel};
     MeshTriangle triangle;
     triangle.sheet = Sheet::kSurroundings;
     triangle.corners = {from, to, to_outside};
@@ -250,8 +242,8 @@ class MeshBuilder {
     add_sheets(triangle, corners, far_at);
   }
 
-  /// The farthest corner goes on to those that are nearer to the nearest one. Background has nothing that could blend
-  /// with it.
+  /// Corners of the surface in front take the fill colour of the farthest corner, the others their own. Beside
+  /// background all corners take that of the background.
   void add_fill(MeshTriangle triangle, const Corners& corners) {
     const auto by_inverse = [&](const glm::ivec2& at) { return inverse(at); };
     const auto [far, near] = std::ranges::minmax(corners, {}, by_inverse);
@@ -259,7 +251,7 @@ class MeshBuilder {
     for (size_t i = 0; i < 3; ++i) {
       const glm::ivec2& at = corners.at(i);
       const bool in_front = inverse(near) - inverse(at) <= inverse(at) - inverse(far);
-      triangle.corners.at(i).continued = grid_.texel(in_front || inverse(far) == 0 ? far : at);
+      triangle.corners.at(i).fill_texel = grid_.texel(in_front || inverse(far) == 0 ? far : at);
     }
     mesh_.push_back(triangle);
   }
@@ -270,9 +262,9 @@ class MeshBuilder {
     for (const glm::ivec2& at : corners) {
       if (!outline(at).beside) continue;
       nearest = std::max(nearest, outline(at).near);
-      if (outline(at).far < inverse(farthest)) farthest = outline(at).far_at;
+      if (inverse(outline(at).far_at) < inverse(farthest)) farthest = outline(at).far_at;
     }
-    // Between a surface and background there would be a needle, as long as the eye moves.
+    // A triangle from a surface to background would become a needle as the eye moves.
     const bool open = inverse(farthest) == 0;
     MeshTriangle near = triangle;
     MeshTriangle far = triangle;
@@ -287,7 +279,7 @@ class MeshBuilder {
       near.corners.at(i).inverse = corner.beside ? corner.near : (in_front ? own : nearest);
       const glm::ivec2 behind = open ? farthest : corner.beside ? corner.far_at : in_front ? farthest : at;
       far.corners.at(i).inverse = inverse(behind);
-      far.corners.at(i).continued = grid_.texel(behind);
+      far.corners.at(i).fill_texel = grid_.texel(behind);
     }
     mesh_.push_back(far);
     mesh_.push_back(near);

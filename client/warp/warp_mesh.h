@@ -18,7 +18,7 @@ struct MeshVertex {
   /// least a half in the texels of the surface in front. Of kSurroundings: 1 at the border of the frame, 0 farthest
   /// out.
   float front = 0;
-  size_t continued = 0;  ///< but for kSurface and kNear: the texel of the surface that goes on here, unseen
+  size_t fill_texel = 0;  ///< of kFar, kFill and kSurroundings: the texel whose fill colour is used, see fill_colors.h
 };
 
 /// A texel beside an outline has pixels of the surface in front, and may have pixels of what is behind. There a frame

@@ -39,7 +39,7 @@ TEST(FillColors, AreTheMeanOfTwoTexelsAround) {
 }
 
 TEST(FillColors, WeighPixelsAndNotTexels) {
-  // Five texels of which the last has one column of pixels: 16 pixels of 100 to each column of it.
+  // The last of five texels has one column of pixels.
   const Pixels pixels = filled_pixels(17, 4, [](int x, int) {
     return x < 16 ? Levels{0, 0, 0} : Levels{170, 17, 255};
   });

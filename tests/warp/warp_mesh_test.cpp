@@ -102,7 +102,7 @@ TEST(WarpMesh, IsTwoSheetsAroundASquareBeforeAPlane) {
     EXPECT_FALSE(square(triangle.far.x, triangle.far.y));
     for (const MeshVertex& vertex : triangle.corners) {
       if (triangle.sheet != Sheet::kNear) {
-        const glm::vec2 centre = centre_of(vertex.continued);
+        const glm::vec2 centre = centre_of(vertex.fill_texel);
         EXPECT_FALSE(square(centre.x, centre.y)) << "what is behind goes on";
       }
       if (triangle.sheet == Sheet::kFill) continue;

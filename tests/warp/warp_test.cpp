@@ -212,7 +212,7 @@ TEST(Warp, WhatOpensHasTheMeanColorOfWhatIsBehind) {
   EXPECT_GT(opened, 100);
 }
 
-TEST(Warp, BeyondTheBorderIsAReflectionThatIsLostInTheMeanOfTheBorder) {
+TEST(Warp, BeyondTheBorderAReflectionFadesToTheMeanColorThere) {
   const geometry::CameraFrame from = camera({0, 0, 4}, {0, 0, 0});
   const geometry::CameraFrame to = camera({0, 0, 4}, {0.4, 0, 0});  // a turn to the right
   const auto stripes = [](const glm::dvec3& eye, const glm::dvec3& ray) {

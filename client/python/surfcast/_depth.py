@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ._wire import surfcast_pb2 as wire
+
+_STEP_PER_PIXEL = 0.03  # of the larger one, for each pixel of a side of a texel
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +25,12 @@ class Depth:
     cell: int
     inverse: npt.NDArray[np.float32]
     seen_through: bool = False
+
+
+def surface_step(a: npt.NDArray[Any], b: npt.NDArray[Any], cell: int) -> npt.NDArray[Any]:
+    """The most by which the inverse depths of texels beside each other may differ on one surface."""
+    step: npt.NDArray[Any] = _STEP_PER_PIXEL * cell * np.maximum(a, b)
+    return step
 
 
 def depth_from(plane: wire.DepthPlane, resolution: tuple[int, int]) -> Depth | None:

@@ -1,4 +1,4 @@
-"""The colours that continue the surfaces of a frame where it does not show them, as `client/warp/fill_colors.h`."""
+"""The colours with which holes in a warped frame are filled, as `client/warp/fill_colors.h` has them."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._depth import Depth
+from ._depth import Depth, surface_step
 
 _A = npt.NDArray[Any]
 
 _REACH = 2  # texels
-_STEP_PER_PIXEL = 0.03  # of inverse depths on one surface, for each pixel of a side of a texel
 
 
 def fill_colors(pixels: _A, depth: Depth) -> _A:
@@ -25,8 +24,8 @@ def fill_colors(pixels: _A, depth: Depth) -> _A:
         for across in range(-_REACH, _REACH + 1):
             own, other = _overlap(down, rows), _overlap(across, columns)
             here, there = inverse[own[0], other[0]], inverse[own[1], other[1]]
-            farther, nearer = np.minimum(here, there), np.maximum(here, there)
-            same = (nearer - farther <= _STEP_PER_PIXEL * depth.cell * nearer) & ((farther > 0) | (nearer == 0))
+            close = np.abs(here - there) <= surface_step(here, there, depth.cell)
+            same = close & ((here == 0) == (there == 0))
             around[own[0], other[0]] += np.where(same[..., None], sums[own[1], other[1]], 0)
     count = around[..., 3:]
     colors: _A = ((around[..., :3] + count // 2) // np.maximum(count, 1)).astype(np.uint8)

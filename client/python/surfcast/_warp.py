@@ -158,10 +158,10 @@ class _Triangles:
         mesh, w, screen, area = mesh.only(shown), w[shown], screen[shown], area[shown]
         self.mesh, self.first, self.end = mesh, first[shown], end[shown]
         self.parts = _barycentric(screen, area)
-        continued = np.moveaxis(source.fill_colors[mesh.continued], -1, 0)
+        fill = np.moveaxis(source.fill_colors[mesh.fill_texel], -1, 0)
         own = [np.ones_like(w), mesh.inverse, mesh.pixel[..., 0], mesh.pixel[..., 1], mesh.front]
-        values = np.stack([*own, *continued], axis=1)
-        # 1 / w, inverse depth, pixel of the frame, front and what goes on unseen: constant, along x, along y.
+        values = np.stack([*own, *fill], axis=1)
+        # 1 / w, inverse depth, pixel of the frame, front and fill colour: constant, along x, along y.
         self.planes = np.einsum("tvc,tcp->tvp", values / w[:, None], self.parts)
         self.farthest = (mesh.inverse / w).min(axis=1)
         self.density = np.sqrt(np.abs(_area(mesh.pixel) / area))
@@ -219,22 +219,22 @@ def _fragments(source: _Source, triangles: _Triangles, chunk: _A, target: _Lens)
     """What each triangle shows in each pixel."""
     triangle, column, row = triangles.places(chunk)
     place = np.stack([np.ones(len(row)), column + 0.5, row + 0.5], axis=1)
-    w, inverse, x, y, front, *continued = np.einsum("tvp,tp->vt", triangles.planes[triangle], place)
+    w, inverse, x, y, front, *channels = np.einsum("tvp,tp->vt", triangles.planes[triangle], place)
     x, y, front = x / w, y / w, front / w
-    unseen = (np.clip(np.stack(continued, axis=-1) / w[:, None], 0, 255) + 0.5).astype(np.uint8)
+    fill = (np.clip(np.stack(channels, axis=-1) / w[:, None], 0, 255) + 0.5).astype(np.uint8)
     sheet, far = triangles.mesh.sheet[triangle], triangles.far[triangle]
     around = sheet == Sheet.SURROUNDINGS
     height, width = source.pixels.shape[:2]
     x, y = np.where(around, _reflected(x, width), x), np.where(around, _reflected(y, height), y)
     color = _sample(source.pixels, x, y)
-    # Beyond the border of a frame its reflection is lost in the mean colour of the border.
-    unseen = np.where(around[:, None], _mixed(unseen, color, 256 * np.clip(front, 0, 1) ** 2), unseen)
+    # Beyond the border the reflection of the frame fades to the fill colour of the border.
+    fill = np.where(around[:, None], _mixed(fill, color, 256 * np.clip(front, 0, 1) ** 2), fill)
     in_front = (front >= 0.5) & (_distance(color, far) >= _SAME_COLOR)
     own = (sheet == Sheet.SURFACE) | ((sheet == Sheet.NEAR) & in_front) | ((sheet == Sheet.FAR) & ~in_front)
     inverse = np.where(sheet >= Sheet.FILL, triangles.farthest[triangle] * _FILLED, inverse)
     inverse = np.where((sheet == Sheet.FAR) & ~own, inverse * _CONTINUED, inverse)
     drawn = (own | (sheet != Sheet.NEAR)) & (inverse > -1)
-    color = np.where(own[:, None], color, unseen)
+    color = np.where(own[:, None], color, fill)
     density = np.where(own, triangles.density[triangle], -1)
     return _Seen(row * target.width + column, inverse, density, color).only(drawn)
 

@@ -9,13 +9,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._depth import Depth
+from ._depth import Depth, surface_step
 
 _A = npt.NDArray[Any]
 
-# An edge is cut if the inverse depths of its ends differ by more than this part of the larger one for each pixel
-# between them, and neither of the slopes beside it explains that.
-_STEP_PER_PIXEL = 0.03
 _SURROUNDINGS = 0.25  # width of what is continued beyond the border, heights of the frame
 
 
@@ -38,7 +35,7 @@ class WarpMesh:
     # (n, 3), of NEAR and FAR: 1 where a corner is the surface in front, 0 where it is what is behind;
     # of SURROUNDINGS: 1 at the border of the frame, 0 farthest out
     front: _A
-    continued: _A  # (n, 3), of FAR, FILL and SURROUNDINGS: the texel of the surface that goes on here, unseen
+    fill_texel: _A  # (n, 3), of FAR, FILL and SURROUNDINGS: the texel whose fill colour is used
     sheet: _A  # (n,)
     background: _A  # (n,), of SURFACE: infinitely far
     far: _A  # (n, 2), of NEAR and FAR: where the frame shows what is behind, pixels
@@ -62,7 +59,7 @@ def _places(texels: int, cell: int, pixels: int) -> _A:
 def _cuts(inverse: _A, cell: int) -> _A:
     """Whether the surface is broken between each value of a row and the next."""
     a, b = inverse[:, :-1], inverse[:, 1:]
-    tolerance = _STEP_PER_PIXEL * cell * np.maximum(a, b)
+    tolerance = surface_step(a, b, cell)
     step = b - a
     there = (a != 0) & (b != 0)
     explained = np.zeros(step.shape, bool)
@@ -171,7 +168,7 @@ def _sheets(grid: _Grid) -> list[WarpMesh]:
         pixel=grid.pixels(corners),
         inverse=inverse,
         front=none,
-        continued=np.zeros(corners.shape, int),
+        fill_texel=np.zeros(corners.shape, int),
         sheet=np.full(len(corners), Sheet.SURFACE),
         background=(inverse == 0).all(axis=1),
         far=grid.pixels(outlines.far_at.ravel()[across]),
@@ -183,18 +180,18 @@ def _sheets(grid: _Grid) -> list[WarpMesh]:
     farthest = np.where(beside, far, np.inf).min(axis=1, keepdims=True)
     in_front = nearest - inverse <= inverse - farthest
     in_near = np.where(beside, near, np.where(in_front, inverse, nearest))
-    # Between a surface and background there would be a needle, as long as the eye moves.
+    # A triangle from a surface to background would become a needle as the eye moves.
     beyond = farthest == 0
     in_far = np.where(beyond, 0, np.where(beside, far, np.where(in_front, farthest, inverse)))
-    # The farthest of the vertices beside an outline goes on to those that are not, if they are in front.
+    # Behind corners in front that are not beside an outline lies what is farthest behind the others.
     last = np.where(beside, far, np.inf).argmin(axis=1)[:, None]
     farthest_at = np.take_along_axis(far_at, last, axis=1)
     behind = np.where(beyond | (in_front & ~beside), farthest_at, np.where(beside, far_at, corners))
 
-    def sheet(kind: Sheet, inverse: _A, front: _A, continued: _A, chosen: _A) -> WarpMesh:
+    def sheet(kind: Sheet, inverse: _A, front: _A, filled_as: _A, chosen: _A) -> WarpMesh:
         kinds = np.full(len(corners), kind)
-        texels = grid.texels(continued)
-        return replace(split, inverse=inverse, front=front, continued=texels, sheet=kinds).only(chosen)
+        texels = grid.texels(filled_as)
+        return replace(split, inverse=inverse, front=front, fill_texel=texels, sheet=kinds).only(chosen)
 
     return [
         plain.only(~outlined),
@@ -205,7 +202,7 @@ def _sheets(grid: _Grid) -> list[WarpMesh]:
 
 
 def _filling(corners: _A, inverse: _A) -> _A:
-    """The farthest corner goes on to those that are nearer to the nearest one. Background does not blend."""
+    """Whose fill colour corners take: in front the farthest one's, else their own; beside background its colour."""
     nearest, farthest = inverse.max(axis=1, keepdims=True), inverse.min(axis=1, keepdims=True)
     far = np.take_along_axis(corners, inverse.argmin(axis=1)[:, None], axis=1)
     filling: _A = np.where((nearest - inverse <= inverse - farthest) | (farthest == 0), far, corners)
@@ -224,7 +221,7 @@ def _surroundings(grid: _Grid, margin: float) -> WarpMesh:
     pixel: list[_A] = []
     inverse: list[_A] = []
     front: list[_A] = []
-    continued: list[_A] = []
+    fill_texel: list[_A] = []
     for along, outwards in sides:
         ends = np.stack([along[:-1], along[1:]], axis=1)
         inner, depth = grid.pixels(ends), grid.inverse.ravel()[ends]
@@ -233,14 +230,14 @@ def _surroundings(grid: _Grid, margin: float) -> WarpMesh:
             pixel.append(quad[:, corners])
             own = [corner % 2 for corner in corners]
             inverse.append(depth[:, own])
-            continued.append(grid.texels(ends)[:, own])
+            fill_texel.append(grid.texels(ends)[:, own])
             front.append(np.tile([float(corner < 2) for corner in corners], (len(quad), 1)))
     count = sum(map(len, pixel))
     return WarpMesh(
         pixel=np.concatenate(pixel),
         inverse=np.concatenate(inverse),
         front=np.concatenate(front),
-        continued=np.concatenate(continued),
+        fill_texel=np.concatenate(fill_texel),
         sheet=np.full(count, Sheet.SURROUNDINGS),
         background=np.zeros(count, bool),
         far=np.zeros((count, 2)),

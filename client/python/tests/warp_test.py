@@ -166,7 +166,7 @@ def test_what_comes_out_has_the_mean_color_of_what_is_behind() -> None:
     assert off(warped, np.asarray((0, 150, 0)))[70:130][opened].max() <= 1
 
 
-def test_beyond_the_border_is_a_reflection_that_is_lost_in_the_mean_of_the_border() -> None:
+def test_beyond_the_border_a_reflection_fades_to_the_mean_color_there() -> None:
     source = camera((0, 0, 4), (0, 0, 0))
     target = camera((0, 0, 4), (0.4, 0, 0))  # a turn to the right
 
@@ -198,7 +198,7 @@ def test_behind_a_surface_no_triangle_joins_another_one_and_background() -> None
     assert set(opened) == {0, 3}
 
 
-def test_colors_that_go_on_do_not_mix_surfaces() -> None:
+def test_fill_colors_do_not_mix_surfaces() -> None:
     part = np.arange(24) // 8  # near, far, background
     picture = np.broadcast_to(255 * np.eye(3, dtype=np.uint8)[part], (8, 24, 3))
     inverse = np.broadcast_to(np.array([1, 1, 0.5, 0.5, 0, 0], np.float32), (2, 6))

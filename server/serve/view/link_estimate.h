@@ -48,11 +48,6 @@ class LinkEstimate {
     double milliseconds = 0;  ///< from sending, or from when the link became free, to arrival
     double elapsed = 0;       ///< milliseconds from sending to arrival
   };
-  /// How long a message took.
-  struct Timed {
-    double bytes = 0;
-    double elapsed = 0;  ///< milliseconds from sending to arrival
-  };
   /// Messages of about the same size.
   struct Group {
     void add(const Sample& sample) {
@@ -66,15 +61,14 @@ class LinkEstimate {
     double milliseconds = 0;
     int count = 0;
   };
-  void learn(const Sample& sample);
-  void learn_rate_now(const Message& message, ViewTime arrival);
+  void learn_slope();
+  void learn_rate_now(const Sample& message, ViewTime arrival);
   [[nodiscard]] double most_bytes_per_ms(double bytes, double elapsed, double since_arrival) const;
-  [[nodiscard]] Timed quickest_message() const;
+  [[nodiscard]] Sample quickest_message() const;
   [[nodiscard]] std::optional<double> slope() const;
 
   std::deque<Message> on_the_way_;
-  std::deque<Sample> samples_;            ///< the most recent ones
-  std::deque<Timed> timed_;               ///< many messages
+  std::deque<Sample> samples_;            ///< the last ones
   double bytes_per_ms_now_ = 0;           ///< 0: unknown
   double last_most_ = 0;                  ///< most_bytes_per_ms() of the last message
   std::optional<ViewTime> last_arrival_;  ///< when the last acknowledged message reached the client

@@ -31,7 +31,7 @@ constexpr int kTexelsInMotion = 80;
 constexpr size_t kDepthBytesAtRest = 6000;
 constexpr size_t kDepthBytesInMotion = 3000;
 constexpr size_t kLatencies = 5;
-constexpr double kLateMs = 100;  // of a message beyond its round trip
+constexpr double kLateMs = 100;  // beyond its round trip, from which on a message is late
 // Clients that warp need no frame for each of the display's: fewer and sharper ones are nearer to the truth. Frames of
 // the best quality are drawn as often as the device can.
 constexpr double kWarpedRate = 0.4;
@@ -493,7 +493,7 @@ void ViewSession::adapt_quality(Job& job, double transfer_ms, double client_ms, 
   job.cost.transfer = transfer_ms;
   job.cost.client = client_ms;
   last_cost_ = job.cost;
-  // While frames are late, few are drawn, and each in less time: no evidence that larger ones would be in time.
+  // While frames are late, fewer are drawn, each in less time. That is no evidence for larger ones.
   if (job.video && late) return;
   // A frame drawn with an earlier quality is no evidence about the current one.
   const bool current = job.quality.draw.rung == quality_.draw.rung && job.quality.link.rung == quality_.link.rung;

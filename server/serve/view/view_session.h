@@ -148,7 +148,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   void send_pieces(ViewTime now);
   void send_piece(size_t bytes, ViewTime now);
   [[nodiscard]] size_t window(ViewTime now) const;
-  /// `late`: it took much longer than others.
+  /// `late`: the frame took kLateMs longer than the quickest message.
   void adapt_quality(Job& job, double transfer_ms, double client_ms, bool late);
 
   service::RenderService& service_;

@@ -135,14 +135,15 @@ void main() {
 }`;
 
 /**
- * For each cell the colour that continues its surface: the mean of cells up to two away whose inverse depths differ by
- * no more than those of neighbours on one surface may.
+ * For each cell the colour with which holes beside its surface are filled: the mean of cells up to two away whose
+ * inverse depths differ by no more than those of neighbours on one surface may.
  */
 export const fillColorFragment = `#version 300 es
 precision highp float;
 uniform sampler2D means;
 uniform highp sampler2D depths;
 uniform float sameSurface;
+const int reach = 2;
 ${cellPixels}
 out vec4 result;
 void main() {
@@ -150,8 +151,8 @@ void main() {
   float here = texelFetch(depths, own, 0).r;
   ivec2 last = textureSize(depths, 0) - 1;
   vec4 sum = vec4(0.0);
-  for (int row = max(own.y - 2, 0); row <= min(own.y + 2, last.y); ++row) {
-    for (int column = max(own.x - 2, 0); column <= min(own.x + 2, last.x); ++column) {
+  for (int row = max(own.y - reach, 0); row <= min(own.y + reach, last.y); ++row) {
+    for (int column = max(own.x - reach, 0); column <= min(own.x + reach, last.x); ++column) {
       ivec2 at = ivec2(column, row);
       float there = texelFetch(depths, at, 0).r;
       bool same = here == 0.0 || there == 0.0 ? here == there : abs(here - there) <= sameSurface * max(here, there);
@@ -164,9 +165,9 @@ void main() {
 }`;
 
 /**
- * What is made up lies behind another vertex, `farthest`, at a part of its inverse depth. It continues the surface of
- * the pixel `from`, or the background if that is outside of the picture. Up to `margin` pixels beyond the border, if
- * that is not 0, it is the reflection of the picture, which is lost in that colour.
+ * What is made up lies behind another vertex, `farthest`, at a part of its inverse depth. It has the fill colour of the
+ * cell of the pixel `from`, or that of the background if `from` is outside of the picture. With a `margin`, in pixels,
+ * the picture is reflected at its border, and the reflection fades to that colour within the margin.
  */
 export const fillVertex = `#version 300 es
 ${depths}

@@ -24,7 +24,7 @@ export interface WarpMesh {
 /** Place of a vertex (x, y, inverse depth), what is behind (x, y; outside of the picture: background), 1 if near. */
 export const sheetFloats = 6;
 
-/** Place of a vertex (x, y, inverse depth), its farthest vertex (the same), and whose surface goes on there (x, y). */
+/** Place of a vertex (x, y, inverse depth), its farthest vertex (the same), and whose fill colour it has (x, y). */
 export const fillFloats = 8;
 
 const maxCellVertices = 32; // of two sheets of four quarters
@@ -306,7 +306,7 @@ class MeshBuilder {
   private farDepths([own, beside, over]: Corners, cutBeside: number, cutOver: number): Corners {
     const { d } = this.lattice;
     const depth = d[this.behind[own]!]!;
-    // Between a surface and background there would be a needle, as long as the eye moves.
+    // A triangle from a surface to background would become a needle as the eye moves.
     const halfTo = (far: number): number => (depth === 0 || far === 0 ? 0 : (far - depth) / 2);
     const half = (other: number, cut: number): number => {
       if (cut !== 0) return d[other]! < d[own]! ? halfTo(d[other]!) : 0;
@@ -333,7 +333,7 @@ class MeshBuilder {
     indices.push(first, first + 1, first + 3, first, first + 3, first + 2);
   }
 
-  /** The farthest corner goes on to those that are nearer to the nearest one. */
+  /** Corners of the surface in front take the fill colour of the farthest corner, the others their own. */
   private addFill(corners: readonly number[]): void {
     const { d } = this.lattice;
     const far = corners.reduce((best, corner) => (d[corner]! < d[best]! ? corner : best));

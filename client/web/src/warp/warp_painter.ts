@@ -16,7 +16,7 @@ export interface WarpSource {
 /** Its floats, and where it begins. */
 type Attribute = readonly [number, number];
 
-/** A part of a buffer of indices. */
+/** A part of a buffer. */
 interface Range {
   readonly first: number;
   readonly count: number;
@@ -25,13 +25,13 @@ interface Range {
 /** A frame on the GPU. */
 interface Upload {
   readonly texture: WebGLTexture;
-  readonly colors: WebGLTexture; // that continue the surface of each cell
+  readonly fillColors: WebGLTexture; // of the cells
   readonly vertices: WebGLBuffer;
   readonly sheets: WebGLBuffer;
-  readonly fills: WebGLBuffer; // surroundings and holes follow
-  readonly fillCount: number; // vertices
-  readonly surroundingCount: number;
-  readonly holeCount: number;
+  readonly madeUp: WebGLBuffer; // vertices
+  readonly fills: Range; // of them
+  readonly surroundings: Range;
+  readonly holes: Range;
   readonly indices: WebGLBuffer;
   readonly surface: Range;
   readonly background: Range;
@@ -60,7 +60,7 @@ interface Programs {
   readonly alone: FramePrograms;
   readonly over: FramePrograms; // the layer above
   readonly background: WebGLProgram;
-  readonly means: WebGLProgram; // of the cells
+  readonly cellMeans: WebGLProgram;
   readonly fillColors: WebGLProgram;
 }
 
@@ -113,9 +113,9 @@ export class WarpPainter {
     const upload = this.uploads.get(source);
     if (!upload) return;
     this.uploads.delete(source);
-    const { texture, colors, vertices, sheets, fills, indices } = upload;
-    for (const each of [texture, colors]) this.gl.deleteTexture(each);
-    for (const buffer of [vertices, sheets, fills, indices]) this.gl.deleteBuffer(buffer);
+    const { texture, fillColors, vertices, sheets, madeUp, indices } = upload;
+    for (const each of [texture, fillColors]) this.gl.deleteTexture(each);
+    for (const buffer of [vertices, sheets, madeUp, indices]) this.gl.deleteBuffer(buffer);
   }
 
   /** Draws `below` as the target sees it, and over it what `above` shows sharper. */
@@ -186,30 +186,30 @@ export class WarpPainter {
     this.use(background, below, target, nearest);
     this.drawBackground(below);
     this.drawBelow(over, below, target, nearest);
-    this.drawHoles(below);
+    this.drawMadeUp(below, this.uploaded(below).holes);
   }
 
   /** Draws what a frame shows, and then behind that what it does not show. */
   private drawBelow(programs: FramePrograms, source: WarpSource, target: Projection, nearest: number): void {
     const { gl } = this;
     const { surface, sheets, fill } = programs;
-    const { near, far, farBackground } = this.uploaded(source);
+    const { near, far, farBackground, fillColors, fills, surroundings } = this.uploaded(source);
     this.use(surface, source, target, nearest);
     this.drawSurface(source);
     this.use(sheets, source, target, nearest);
     this.drawSheets(source, near, far, farBackground);
     gl.depthFunc(gl.LESS);
     this.use(fill, source, target, nearest);
-    this.bindTexture(fill, 'colors', 3, this.uploaded(source).colors);
+    this.bindTexture(fill, 'colors', 3, fillColors);
     gl.uniform1f(gl.getUniformLocation(fill, 'cell'), source.depth.cell);
     gl.uniform1f(gl.getUniformLocation(fill, 'part'), continued);
     gl.uniform1f(gl.getUniformLocation(fill, 'margin'), 0);
     this.drawContinued(source);
     gl.uniform1f(gl.getUniformLocation(fill, 'part'), filled);
-    this.drawFills(source);
+    this.drawMadeUp(source, fills);
     gl.uniform1f(gl.getUniformLocation(fill, 'margin'), marginOf(source.depth));
-    this.drawSurroundings(source);
-    gl.uniform1f(gl.getUniformLocation(fill, 'margin'), 0);
+    this.drawMadeUp(source, surroundings);
+    gl.uniform1f(gl.getUniformLocation(fill, 'margin'), 0); // for holes
   }
 
   private drawBackground(source: WarpSource): void {
@@ -230,35 +230,17 @@ export class WarpPainter {
     for (const range of ranges) this.drawRange(upload, range);
   }
 
-  /** The colour of what is behind goes on behind what is in front. */
+  /** What is behind goes on behind what is in front, in its fill colour. */
   private drawContinued(source: WarpSource): void {
     const upload = this.uploaded(source);
     this.bindAttributes(upload.sheets, sheetFloats, [[3, 0], [3, 0], [2, 3]]);
     this.drawRange(upload, upload.far);
   }
 
-  private drawFills(source: WarpSource): void {
-    const upload = this.uploaded(source);
-    this.bindFills(upload);
-    this.gl.drawArrays(this.gl.TRIANGLES, 0, upload.fillCount);
-  }
-
-  /** After the fills, by their program. */
-  private drawSurroundings(source: WarpSource): void {
-    const upload = this.uploaded(source);
-    this.bindFills(upload);
-    this.gl.drawArrays(this.gl.TRIANGLES, upload.fillCount, upload.surroundingCount);
-  }
-
-  /** After the fills, by their program. */
-  private drawHoles(source: WarpSource): void {
-    const upload = this.uploaded(source);
-    this.bindFills(upload);
-    this.gl.drawArrays(this.gl.TRIANGLES, upload.fillCount + upload.surroundingCount, upload.holeCount);
-  }
-
-  private bindFills({ fills }: Upload): void {
-    this.bindAttributes(fills, fillFloats, [[3, 0], [3, 3], [2, 6]]);
+  /** By the program of fills. */
+  private drawMadeUp(source: WarpSource, { first, count }: Range): void {
+    this.bindAttributes(this.uploaded(source).madeUp, fillFloats, [[3, 0], [3, 3], [2, 6]]);
+    this.gl.drawArrays(this.gl.TRIANGLES, first, count);
   }
 
   private drawRange(upload: Upload, { first, count }: Range): void {
@@ -306,20 +288,20 @@ export class WarpPainter {
     const known = this.uploads.get(source);
     if (known) return known;
     const texture = pictureTexture(this.gl, source.bitmap);
-    const colors = this.fillColors(source.depth, texture);
-    const upload = { texture, colors, ...buffersOf(this.gl, meshOf(source.depth)) };
+    const fillColors = this.fillColors(source.depth, texture);
+    const upload = { texture, fillColors, ...buffersOf(this.gl, meshOf(source.depth)) };
     this.uploads.set(source, upload);
     return upload;
   }
 
-  /** A texel for each cell of a picture: the colour that continues its surface. */
+  /** A texel for each cell of a picture. */
   private fillColors(depth: DepthPlane, picture: WebGLTexture): WebGLTexture {
     const { gl } = this;
     const { width, height } = depth;
     const depths = textureOf(gl, gl.NEAREST);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32F, width, height, 0, gl.RED, gl.FLOAT, depth.values);
     const [means, colors] = [cellTexture(gl, width, height), cellTexture(gl, width, height)];
-    const { means: ofCells, fillColors } = this.programs!;
+    const { cellMeans, fillColors } = this.programs!;
     const framebuffer = gl.createFramebuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     gl.viewport(0, 0, width, height);
@@ -331,9 +313,9 @@ export class WarpPainter {
       gl.uniform1f(gl.getUniformLocation(program, 'cell'), depth.cell);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     };
-    gl.useProgram(ofCells);
-    this.bindTexture(ofCells, 'picture', 0, picture);
-    cover(ofCells, means);
+    gl.useProgram(cellMeans);
+    this.bindTexture(cellMeans, 'picture', 0, picture);
+    cover(cellMeans, means);
     gl.useProgram(fillColors);
     this.bindTexture(fillColors, 'means', 0, means);
     this.bindTexture(fillColors, 'depths', 1, depths);
@@ -355,13 +337,13 @@ export class WarpPainter {
   }
 }
 
-/** Where arrays lie in the buffer that holds them one after the other. */
-function rangesOf(parts: readonly Uint32Array[]): Range[] {
+/** Where arrays lie in the buffer that holds them one after the other. `size`: of an element. */
+function rangesOf(parts: readonly { readonly length: number }[], size = 1): Range[] {
   let first = 0;
-  return parts.map(({ length: count }) => ({ first: (first += count) - count, count }));
+  return parts.map(({ length }) => length / size).map((count) => ({ first: (first += count) - count, count }));
 }
 
-/** Beyond its border it is its reflection. */
+/** It is reflected at its border. */
 function pictureTexture(gl: WebGL2RenderingContext, bitmap: ImageBitmap): WebGLTexture {
   const texture = textureOf(gl, gl.LINEAR, gl.MIRRORED_REPEAT);
   gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
@@ -375,18 +357,17 @@ function cellTexture(gl: WebGL2RenderingContext, width: number, height: number):
   return texture;
 }
 
-function buffersOf(gl: WebGL2RenderingContext, mesh: WarpMesh): Omit<Upload, 'texture' | 'colors'> {
+function buffersOf(gl: WebGL2RenderingContext, mesh: WarpMesh): Omit<Upload, 'texture' | 'fillColors'> {
   const parts = [mesh.surface, mesh.background, mesh.near, mesh.far, mesh.farBackground];
   const [surface, background, near, far, farBackground] = rangesOf(parts) as [Range, Range, Range, Range, Range];
+  const made = [mesh.fills, mesh.surroundings, mesh.holes];
+  const [fills, surroundings, holes] = rangesOf(made, fillFloats) as [Range, Range, Range];
   return {
     vertices: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.vertices]),
     sheets: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.sheets]),
-    fills: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.fills, mesh.surroundings, mesh.holes]),
-    fillCount: mesh.fills.length / fillFloats,
-    surroundingCount: mesh.surroundings.length / fillFloats,
-    holeCount: mesh.holes.length / fillFloats,
+    madeUp: bufferOf(gl, gl.ARRAY_BUFFER, made),
     indices: bufferOf(gl, gl.ELEMENT_ARRAY_BUFFER, parts),
-    ...{ surface, background, near, far, farBackground },
+    ...{ surface, background, near, far, farBackground, fills, surroundings, holes },
   };
 }
 
@@ -442,7 +423,7 @@ function programsOf(gl: WebGL2RenderingContext): Programs {
     alone: ofFrames(false),
     over: ofFrames(true),
     background: programOf(gl, shaders.backgroundVertex, shaders.backgroundFragment),
-    means: programOf(gl, shaders.coverVertex, shaders.meanFragment),
+    cellMeans: programOf(gl, shaders.coverVertex, shaders.meanFragment),
     fillColors: programOf(gl, shaders.coverVertex, shaders.fillColorFragment),
   };
 }
