@@ -64,6 +64,7 @@ TEST_F(AtomicFileTest, ASignalThatEndsTheProcessLeavesNothingButTheOldFile) {
   const fs::path target = folder_ / "out";
   ASSERT_TRUE(write_file_atomically(target, "old"));
   const auto interrupted = [&target](int signal) {
+    std::signal(signal, SIG_DFL);  // a shell lets commands in the background ignore SIGINT
     remove_unfinished_files_on_signals();
     Result<AtomicFile> moved = AtomicFile::create(target);
     const AtomicFile file = std::move(*moved);

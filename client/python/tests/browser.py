@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 import itertools
 import json
+import os
 import re
 import shutil
+import signal
 import subprocess
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -64,7 +66,9 @@ async def open_page(url: str, folder: Path) -> AsyncIterator[Page]:
     program = shutil.which("chromium-headless-shell") or shutil.which("chromium")
     assert program is not None
     flags = ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0", "--window-size=1280,1000"]
-    process = subprocess.Popen([program, *flags, f"--user-data-dir={folder}"], stderr=subprocess.PIPE, text=True)
+    # In a group of its own: Debian's program is a script that starts the browser, which would outlive it.
+    command = [program, *flags, f"--user-data-dir={folder}"]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
     connect = import_module("websockets").connect
     try:
         async with connect(await _address(process), max_size=None) as socket:
@@ -73,7 +77,7 @@ async def open_page(url: str, folder: Path) -> AsyncIterator[Page]:
             async with connect(f"ws://127.0.0.1:{host}/devtools/page/{target}", max_size=None) as page:
                 yield Page(page)
     finally:
-        process.kill()
+        os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         if process.stderr is not None:
             process.stderr.close()
