@@ -17,9 +17,9 @@ demo:
 	@cmake/demo.sh build/bin demo
 
 # ALL=1: also the cases that otherwise run in `make nightly` alone.
-# Five at a time on two processors: the browser's and the sockets' tests wait more than they compute, and pictures count
+# Six at a time on two processors: the browser's and the sockets' tests wait more than they compute, and pictures count
 # for two.
-TEST_JOBS = $(shell expr $$(nproc) \* 5 / 2)
+TEST_JOBS = $(shell expr $$(nproc) \* 3)
 test: build
 	ctest --preset release -j$(TEST_JOBS) $(if $(ALL),,--label-exclude nightly)
 

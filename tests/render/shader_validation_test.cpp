@@ -304,12 +304,26 @@ std::vector<std::string> preprocessed(const ShaderFolder& folder) {
   return texts;
 }
 
-/// Numbers of the bindings of a shader's declarations that match, each once.
-std::set<int> bindings(const std::string& text, const std::string& declaration) {
-  const std::regex pattern(R"(binding *= *(\d+)[^)]*\)[^;{]*\b)" + declaration);
+/// The declarations of a shader that have a binding, from this word on. Expressions search
+/// them rather than whole texts, in a fraction of the time.
+std::vector<std::string> bound_declarations(const std::string& text) {
+  std::vector<std::string> declarations;
+  for (size_t at = text.find("binding"); at != std::string::npos; at = text.find("binding", at + 1)) {
+    const size_t end = text.find_first_of(";{", at);
+    declarations.push_back(text.substr(at, end == std::string::npos ? end : end + 1 - at));
+  }
+  return declarations;
+}
+
+/// Numbers of the bindings of the declarations that match, each once.
+std::set<int> bindings(const std::vector<std::string>& declarations, const std::string& wanted) {
+  const std::regex pattern(R"(binding *= *(\d+)[^)]*\)[^;{]*\b)" + wanted);
   std::set<int> found;
-  for (auto match = std::sregex_iterator(text.begin(), text.end(), pattern); match != std::sregex_iterator(); ++match) {
-    found.insert(std::stoi((*match)[1]));
+  std::smatch match;
+  for (const std::string& declaration : declarations) {
+    if (std::regex_search(declaration, match, pattern, std::regex_constants::match_continuous)) {
+      found.insert(std::stoi(match[1]));
+    }
   }
   return found;
 }
@@ -334,13 +348,14 @@ TEST(ShaderValidation, EveryShaderStaysWithinTheLimitsOfDevices) {
   ASSERT_EQ(texts.size(), folder.texts().size());
   for (size_t i = 0; i < texts.size(); ++i) {
     const std::string shader = defines_of(folder.texts()[i]);
-    const std::set<int> storage = bindings(texts[i], "buffer\\b");
+    const std::vector<std::string> declarations = bound_declarations(texts[i]);
+    const std::set<int> storage = bindings(declarations, "buffer\\b");
     ASSERT_FALSE(storage.empty()) << shader;
     EXPECT_LE(storage.size(), static_cast<size_t>(kStorageBlocks)) << shader;
     EXPECT_LT(*storage.rbegin(), kStorageBindings) << shader;
     for (const auto& [declaration, most] :
          {std::pair("u?image\\w+", kImages), {"u?sampler\\w+", kTextures}, {"uniform +\\w+ *\\{", kUniformBlocks}}) {
-      const std::set<int> used = bindings(texts[i], declaration);
+      const std::set<int> used = bindings(declarations, declaration);
       EXPECT_LE(used.size(), static_cast<size_t>(most)) << declaration << ' ' << shader;
       EXPECT_TRUE(used.empty() || *used.rbegin() < most) << declaration << ' ' << shader;
     }

@@ -18,6 +18,8 @@ async function measureTwoPoints(kind: string): Promise<void> {
 /** The bytes of a file that an action saves. */
 const saved = async (action: () => Promise<void>): Promise<Buffer> => (await look.saved(yard.page, action)).bytes;
 
+const rounding = 1e-9; // metres
+
 /** Points of the scene in a band from a to b, by a search of them all. */
 function pointsInBand(a: number[], b: number[], width: number): number {
   const [dx, dy] = [b[0]! - a[0]!, b[1]! - a[1]!];
@@ -27,8 +29,10 @@ function pointsInBand(a: number[], b: number[], width: number): number {
     const [x, y, z] = worldOf(p);
     const along = ((x - a[0]!) * dx + (y - a[1]!) * dy) / length;
     const across = ((y - a[1]!) * dx - (x - a[0]!) * dy) / length;
+    // The ends are points of the scene, which belong to the band whatever rounding makes of their places.
+    if (along < -rounding || along > length + rounding || Math.abs(across) > width / 2) continue;
     // The model has one surfel for points that coincide.
-    if (along >= 0 && along <= length && Math.abs(across) <= width / 2) places.add(`${x},${y},${z}`);
+    places.add(`${x},${y},${z}`);
   }
   return places.size;
 }

@@ -18,6 +18,14 @@ const flags = [
 export const launch = (): Promise<Browser> =>
   chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: flags });
 
+let shared: Browser | undefined;
+
+/** One browser for all files of tests: it starts for as long as a test takes, and pages share nothing. */
+export async function sharedBrowser(): Promise<Browser> {
+  if (!shared?.isConnected()) shared = await launch();
+  return shared;
+}
+
 export const desktop: BrowserContextOptions = { viewport: { width: 1200, height: 640 } };
 export const phone: BrowserContextOptions = { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true };
 

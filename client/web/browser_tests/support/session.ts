@@ -29,11 +29,10 @@ export class Session {
 
   async begin(): Promise<void> {
     this.folder = await mkdtemp(join(tmpdir(), 'surfcast-viewer-'));
-    this.browser = await look.launch();
+    this.browser = await look.sharedBrowser();
   }
 
   async end(): Promise<void> {
-    await this.browser?.close();
     if (this.folder) await rm(this.folder, { recursive: true });
   }
 }
