@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Everything that the check of a change leaves out. SURFCAST_NIGHTLY_RUNS: how often the whole suite runs under load.
+# SURFCAST_NIGHTLY_LOAD: how many tests are run at once on each processor for that.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=cmake/parts.sh
@@ -13,20 +14,11 @@ export SURFCAST_SOAK_SECONDS=60
 runs=${SURFCAST_NIGHTLY_RUNS:-20}
 load=${SURFCAST_NIGHTLY_LOAD:-4}
 
-# The whole suite while `load` processes compute. A test that fails once has failed.
+# The whole suite many times, with `load` tests at once on each processor: the tests are each other's load. ctest
+# repeats each until it fails. Samples of inputs do here.
 under_load() {
-  local busy=() failed=0 run i
-  for ((i = 0; i < load; ++i)); do
-    (while :; do :; done) &
-    busy+=($!)
-  done
-  for ((run = 1; run <= runs; ++run)); do
-    echo "run $run of $runs under a load of $load"
-    make test ALL=1 || failed=$((failed + 1))
-  done
-  kill "${busy[@]}"
-  echo "$failed of $runs runs under a load of $load failed"
-  [ "$failed" = 0 ]
+  env --unset=SURFCAST_DAMAGED_INPUTS --unset=SURFCAST_STOPPED_BUILDS --unset=SURFCAST_SOAK_SECONDS \
+    ctest --preset release "-j$(($(nproc) * load))" --repeat "until-fail:$runs"
 }
 
 part 'packages' make packages lint-packages sanitizer-packages
