@@ -77,7 +77,7 @@ endif()
 
 # surfcast_precompiled_headers(NAME HEADERS header... [LIBS lib...] [OPTIONS option...]) precompiles headers once, if
 # SURFCAST_PCH is on, for targets that are compiled with the same options. surfcast_use_precompiled_headers(TARGET NAME)
-# uses them. The build of the packages and clang-tidy do without: there, a source that lacks an include fails.
+# uses them. clang-tidy does without: there, a source that lacks an include fails.
 function(surfcast_precompiled_headers name)
   if(NOT SURFCAST_PCH)
     return()

@@ -18,7 +18,8 @@ esac
 rm -f "$output" "$output.sum"
 "$@"
 {
-  echo "$*" | sed "s#$CCACHE_BASEDIR/##g"
+  # Whatever the checkout and its build folder are named.
+  echo "$*" | sed "s#$PWD/#build/#g; s#$CCACHE_BASEDIR/##g"
   # The list of headers follows the colon, continued over lines.
   sed 's/^[^ ]*:/ /; s/\\$//' "$output.d" | xargs cat
 } | sha256sum >"$output.sum"
