@@ -15,7 +15,7 @@ runs=${SURFCAST_NIGHTLY_RUNS:-20}
 load=${SURFCAST_NIGHTLY_LOAD:-4}
 
 # The whole suite many times, with `load` tests at once on each processor: the tests are each other's load. ctest
-# repeats each until it fails. Samples of inputs do here.
+# repeats each until it fails. Inputs are sampled, as in `make test`.
 under_load() {
   env --unset=SURFCAST_DAMAGED_INPUTS --unset=SURFCAST_STOPPED_BUILDS --unset=SURFCAST_SOAK_SECONDS \
     ctest --preset release "-j$(($(nproc) * load))" --repeat "until-fail:$runs"

@@ -6,7 +6,7 @@ export default defineConfig({
     pool: 'threads',
     maxWorkers: 2,
     minWorkers: 1,
-    isolate: false, // modules are read once for all files, half of the time
+    isolate: false, // loads modules once for all files, which halves the time
     testTimeout: 60_000,
   },
 });

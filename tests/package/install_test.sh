@@ -76,7 +76,7 @@ unit=$prefix/lib/systemd/system/surfcastd.service
 grep --quiet '^ExecStart=.*/bin/surfcastd serve' "$unit" || fail "the unit starts no server"
 settings=$(sed -n 's/^EnvironmentFile=-.*\(\/etc\/default\/.*\)$/\1/p' "$unit")
 [ -f "$prefix$settings" ] || fail "the unit reads $settings, which is not installed"
-# The unit itself takes SURFCAST_MODELS.
+# serve does not read SURFCAST_MODELS: the unit passes it as an argument.
 help=$("$prefix/bin/surfcastd" serve --help)
 for variable in $(sed -n 's/^#\(SURFCAST_[A-Z_]*\)=.*/\1/p' "$prefix$settings"); do
   case "$help Env:SURFCAST_MODELS" in

@@ -304,8 +304,8 @@ std::vector<std::string> preprocessed(const ShaderFolder& folder) {
   return texts;
 }
 
-/// The declarations of a shader that have a binding, from this word on. Expressions search
-/// them rather than whole texts, in a fraction of the time.
+/// The declarations of a shader that have a binding, each from the word `binding` on. std::regex is slow, so it
+/// searches these instead of the whole text.
 std::vector<std::string> bound_declarations(const std::string& text) {
   std::vector<std::string> declarations;
   for (size_t at = text.find("binding"); at != std::string::npos; at = text.find("binding", at + 1)) {

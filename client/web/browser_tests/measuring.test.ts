@@ -29,7 +29,7 @@ function pointsInBand(a: number[], b: number[], width: number): number {
     const [x, y, z] = worldOf(p);
     const along = ((x - a[0]!) * dx + (y - a[1]!) * dy) / length;
     const across = ((y - a[1]!) * dx - (x - a[0]!) * dy) / length;
-    // The ends are points of the scene, which belong to the band whatever rounding makes of their places.
+    // The ends are points of the scene, which belong to the band however their places are rounded.
     if (along < -rounding || along > length + rounding || Math.abs(across) > width / 2) continue;
     // The model has one surfel for points that coincide.
     places.add(`${x},${y},${z}`);

@@ -20,7 +20,7 @@ export const launch = (): Promise<Browser> =>
 
 let shared: Browser | undefined;
 
-/** One browser for all files of tests: it starts for as long as a test takes, and pages share nothing. */
+/** One browser for all files: its start takes as long as a test. Each page has a context of its own. */
 export async function sharedBrowser(): Promise<Browser> {
   if (!shared?.isConnected()) shared = await launch();
   return shared;
