@@ -10,6 +10,7 @@
 #include "geometry/morton.h"
 #include "geometry/zone.h"
 #include "ldc/lattice.h"
+#include "point_tree/coarse_colors.h"
 #include "point_tree/columns.h"
 #include "surfel/even_sampling.h"
 #include "surfel/normalization_weights.h"
@@ -44,7 +45,7 @@ Rows rows_around(const NodePoints& node, const CodeRange& cell, const geometry::
 
 /// The points of a path in a cell, along the Morton order; equal ones by the depth of their nodes.
 CellSurfels points_within(const PointPath& path, const CodeRange& range) {
-  CellSurfels unsorted{empty_like<surfel::SurfelCloud>(path.front()->points), {}};
+  CellSurfels unsorted{empty_like<surfel::SurfelCloud>(path.front()->points), {}, {}};
   for (const std::shared_ptr<const NodePoints>& node : path) {
     const Rows rows = rows_within(*node, range);
     append_points(node->points, rows, unsorted.cloud);
@@ -53,7 +54,7 @@ CellSurfels points_within(const PointPath& path, const CodeRange& range) {
   Rows order(unsorted.codes.size());
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, {}, [&](uint32_t i) { return unsorted.codes[i]; });
-  CellSurfels sorted{empty_like<surfel::SurfelCloud>(unsorted.cloud), {}};
+  CellSurfels sorted{empty_like<surfel::SurfelCloud>(unsorted.cloud), {}, {}};
   append_points(unsorted.cloud, order, sorted.cloud);
   append_rows(unsorted.codes, order, sorted.codes);
   return sorted;
@@ -109,6 +110,15 @@ void cut(surfel::SurfelCloud& cloud, size_t count) {
   std::vector<bool> keep(cloud.size(), false);
   std::fill_n(keep.begin(), count, true);
   estimation::keep_surfels(cloud, keep);
+}
+
+/// The surfels as they stand for finer ones.
+std::shared_ptr<const surfel::SurfelCloud> coarse_cloud(const std::shared_ptr<const surfel::SurfelCloud>& cloud,
+                                                        std::vector<glm::u16vec3> colors) {
+  if (colors.empty()) return cloud;
+  auto coarse = std::make_shared<surfel::SurfelCloud>(*cloud);
+  coarse->colors->values = std::move(colors);
+  return coarse;
 }
 
 /// The surfels that a plan takes, before they are thinned or divided.
@@ -180,6 +190,10 @@ CellSurfels surfels_of_node(const NodeTree& tree, uint32_t node, const PointPath
   }
   estimate_surfels(cells, key, schema, cell.cloud);
   cell.cloud.weights = surfel::normalization_weights(cell.cloud);
+  if (cell.cloud.colors && !tree.nodes[node].leaf()) {
+    cell.coarse_colors = coarse_colors(cell.cloud);
+    cell.coarse_colors.resize(count);
+  }
   cut(cell.cloud, count);
   return cell;
 }
@@ -189,11 +203,12 @@ Result<std::vector<MadeBlock>> divide_surfels(const NodeTree& tree, const BlockT
   const auto largest = static_cast<float>(largest_radius(tree, node, radius));
   for (float& own : surfels.cloud.radii) own = std::min(own, largest);
   const auto cloud = std::make_shared<const surfel::SurfelCloud>(std::move(surfels.cloud));
+  const auto coarse = coarse_cloud(cloud, std::move(surfels.coarse_colors));
   std::vector<MadeBlock> blocks;
   for (const uint32_t number : table.of_node[node]) {
     const BlockPlan& plan = table.plans[number];
     const size_t room = table.entries[number].items;
-    MadeBlock block{number, cloud, members_of(tree, plan, surfels.codes), {}};
+    MadeBlock block{number, plan.leaf ? cloud : coarse, members_of(tree, plan, surfels.codes), {}};
     if (plan.leaf) block.members = part_of(block.members, plan);
     if (block.members.size() > room && plan.leaf) {
       return fail(ErrorKind::kUnsupported,
