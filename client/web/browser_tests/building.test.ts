@@ -10,6 +10,9 @@ import { useYard } from './support/yard';
 
 const yard = useYard();
 
+/** For a build to end, ms. It runs at idle priority: all other programs of a busy machine go first. */
+const buildTime = 270_000;
+
 /** A hilly square; larger than what is built before a test could look. */
 async function writeHills(file: string, side: number): Promise<void> {
   const points: LasPoint[] = [];
@@ -35,7 +38,7 @@ describe('a scan that is being built', () => {
       await yard.page.locator('.status', { hasText: 'Preview' }).waitFor();
       await yard.page.evaluate(() => (window.name = 'not reloaded'));
       await look.drag(yard.page, 90, -30); // moves while the yard.model is built
-      await look.sharp(yard.page);
+      await look.sharp(yard.page, buildTime);
       expect(await yard.page.evaluate(() => window.name)).toBe('not reloaded');
       expect(yard.page.url()).toContain('#/hills');
       const kinds = wire.frames.map((frame) => frame.picture?.preview ?? false);
@@ -74,14 +77,14 @@ describe('a scan that is being built', () => {
       await row('notes.docx').getByText('Not a scan by its name').waitFor();
       await row('bad.ply').getByText('bad.ply: ').waitFor();
       await row('shed.las').getByRole('button', { name: 'Open' }).click();
-      await look.sharp(yard.page);
+      await look.sharp(yard.page, buildTime);
       expect(yard.page.url()).toContain('#/shed');
       expect((await readdir(uploads)).sort()).toEqual(['shed.las']);
       await yard.page.goto(`${taking.url}#/`);
       const torn = Buffer.from('1 2 3\n4 5\n');
       await yard.page.locator('.send-scans input').setInputFiles({ name: 'torn.xyz', mimeType: '', buffer: torn });
       await row('torn.xyz').getByRole('button', { name: 'Open' }).click();
-      await yard.page.getByText('torn cannot be built').waitFor();
+      await yard.page.getByText('torn cannot be built').waitFor({ timeout: buildTime });
     } finally {
       await taking.kill();
       await rm(uploads, { recursive: true });

@@ -42,10 +42,10 @@ export async function open(browser: Browser, options: BrowserContextOptions): Pr
 const noted = (page: Page): Promise<unknown> =>
   page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
-/** Waits until the picture on the screen is the converged one of the newest view. */
-export async function sharp(page: Page): Promise<void> {
+/** Waits until the picture on the screen is the converged one of the newest view. `timeout`: in ms, if not the usual. */
+export async function sharp(page: Page, timeout?: number): Promise<void> {
   await noted(page);
-  await page.locator('.status .lamp.sharp').waitFor({ state: 'attached' });
+  await page.locator('.status .lamp.sharp').waitFor({ state: 'attached', timeout });
 }
 
 /** Opens or closes the panel of options, and waits for the picture of the size that it leaves. */
