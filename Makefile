@@ -21,7 +21,7 @@ demo:
 # for two.
 TEST_JOBS = $(shell expr $$(nproc) \* 3)
 test: build
-	ctest --preset release -j$(TEST_JOBS) $(if $(ALL),,--label-exclude nightly)
+	cmake/run_tests.sh release build -j$(TEST_JOBS) $(if $(ALL),,--label-exclude nightly)
 
 # CHANGED=1: builds, and runs the tests that can see what differs from BASE (the last commit), as many as take
 # CHECK_SECONDS, nearest first. Without: the check of a change, part by part.

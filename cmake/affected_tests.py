@@ -2,9 +2,9 @@
 """affected_tests.py BUILD [--base REVISION] [--seconds S | --programs LABELS]: the tests that can see a change.
 
 A change is what differs from REVISION (HEAD where nothing is committed yet, else the commit before it), files that git
-does not know included. The build says what each program is made of: the statements of build.ninja, and the headers that
-Ninja noted when it compiled. A test sees its own program, the programs that this one starts, and for scripts the files
-beside them.
+does not know included. The build says what each program is made of: the statements of build.ninja, the headers that
+Ninja noted when it compiled, and the files and folders whose paths are compiled in. A test sees its own program, the
+programs that this one starts, and for scripts the files beside them.
 
 Without further options it builds what these tests need and runs them: nearest first, and as many as the costs that
 ctest has recorded allow within --seconds. The rest is named. With --programs it prints the affected test programs that
@@ -52,7 +52,10 @@ class BuildGraph:
 
     def read_statements(self):
         text = (self.build / "build.ninja").read_text().replace("$\n", "").replace("${cmake_ninja_workdir}", "")
+        output = None
         for line in text.splitlines():
+            if line.startswith("  DEFINES = "):
+                self.inputs[output] |= self.files_named_in(line)
             if not line.startswith("build "):
                 continue
             outputs, _, rest = line[len("build "):].partition(": ")
@@ -61,9 +64,18 @@ class BuildGraph:
                 # Only says what must exist before: generated headers, which Ninja notes when they are read.
                 inputs = inputs[: inputs.index("||")]
             inputs = {self.name(path.replace("$ ", " ").replace("$:", ":")) for path in inputs if path not in ("|", "||")}
-            for output in re.split(r"(?<!\$) +", outputs.strip()):
-                if output != "|":
-                    self.inputs[self.name(output.replace("$ ", " ").replace("$:", ":"))] |= inputs
+            for path in re.split(r"(?<!\$) +", outputs.strip()):
+                if path != "|":
+                    output = self.name(path.replace("$ ", " ").replace("$:", ":"))
+                    self.inputs[output] |= inputs
+
+    def files_named_in(self, definitions):
+        """The files whose paths are compiled in, and those in such folders."""
+        files = set()
+        for path in re.findall(r'\\"(/[^"\\]+)\\"', definitions):
+            files.add(self.name(path))
+            files |= {self.name(os.path.join(folder, name)) for folder, _, names in os.walk(path) for name in names}
+        return files
 
     def read_headers(self):
         current = None
@@ -72,6 +84,16 @@ class BuildGraph:
                 self.inputs[current].add(self.name(line.strip()))
             elif ": #deps" in line:
                 current = self.name(line.split(": #deps")[0])
+
+    def made_of(self, files):
+        """The files themselves, and all that they are made of, directly or not."""
+        found, left = set(files), list(files)
+        while left:
+            for path in self.inputs.get(left.pop(), ()):
+                if path not in found:
+                    found.add(path)
+                    left.append(path)
+        return found
 
     def distances(self, files):
         """How many steps each file that is made of one of `files` is away from it."""
@@ -103,6 +125,7 @@ class Test:
         properties = {p["name"]: p["value"] for p in entry.get("properties", [])}
         self.labels = "|".join(properties.get("LABELS", []))
         self.estimated_cost = float(properties.get("COST", 1))  # seconds
+        self.command = entry.get("command", []) + properties.get("ENVIRONMENT", [])
         words = entry.get("command", []) + [word.partition("=")[2] for word in properties.get("ENVIRONMENT", [])]
         files = [graph.name(word) for word in words if os.path.isabs(word) and os.path.isfile(word)]
         own = [path for path in files if not path.startswith("..")]

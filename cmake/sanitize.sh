@@ -29,4 +29,4 @@ if [ $# -gt 0 ]; then
   selection=(--tests-regex "^($(IFS='|' && echo "${targets[*]}"))(_[a-z]+|_[0-9]+)?$")
 fi
 "${fixed[@]}" cmake --build --preset "$preset" --target "${targets[@]}"
-"${fixed[@]}" ctest --preset "$preset" "-j$(nproc)" --label-regex "$labels" "${selection[@]}"
+"${fixed[@]}" cmake/run_tests.sh "$preset" "build-$preset" "-j$(nproc)" --label-regex "$labels" "${selection[@]}"

@@ -18,6 +18,8 @@ EXPECTED = [
     ("protocol/surfcast.proto", {"protocol_test", "net_test", "client_test"}, {"laz_test"}),
     ("client/web/src/state/place.ts", {"run_tests.sh"}, {"scan_test"}),
     ("client/python/surfcast/camera_path.py", {"run_tests.sh"}, {"scan_test"}),
+    ("tests/data/lion.drc", {"lion_gl_test"}, {"base_test"}),
+    ("docs/settings.md", {"settings_table_test"}, {"scan_test"}),
 ]
 
 
@@ -39,4 +41,5 @@ def main():
     return 1 if wrong else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())
