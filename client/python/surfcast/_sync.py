@@ -368,7 +368,10 @@ class Model:
         return Widget(self, camera, resolution, on_pick, options)
 
     def wait_complete(self, *, timeout: float | None = None) -> None:
-        """Waits until the model of a scan is complete. Raises ServerFault if it could not be built."""
+        """Waits until the model of a scan is complete. Raises ServerFault if it could not be built.
+
+        `timeout`: of the whole wait, seconds; None: as long as the build takes. The server builds at low priority.
+        """
         self._runner.run(self._model.wait_complete(timeout=timeout))
         self._info = None
 

@@ -6,7 +6,7 @@ import asyncio
 import os
 import time
 from collections.abc import AsyncIterator, Iterable, Sequence
-from contextlib import aclosing
+from contextlib import aclosing, nullcontext
 from os import PathLike
 from types import TracebackType
 from typing import Any, Unpack
@@ -327,8 +327,12 @@ class Model:
         return View(self._connection, self.name, camera, target_fps, acknowledge, depth, dict(options))
 
     async def wait_complete(self, *, timeout: float | None = None, pause: float = 0.2) -> None:
-        """Waits until the model of a scan is complete. Raises ServerFault if it could not be built."""
-        async with self._connection.within(timeout, "wait_complete"):
+        """Waits until the model of a scan is complete. Raises ServerFault if it could not be built.
+
+        `timeout`: of the whole wait, seconds; None: as long as the build takes. The server builds at low priority.
+        """
+        limit = nullcontext() if timeout is None else self._connection.within(timeout, "wait_complete")
+        async with limit:
             while scan := await self._scan():
                 if scan.state == "failed":
                     raise ServerFault(f"{self.name}: {scan.problem}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 from sample_models import SURFCASTD, Scan, write_las
 
 import surfcast
+from surfcast import aio
 from surfcast.testing import RunningServer, server
 
 SIZE = (64, 48)
@@ -70,7 +72,7 @@ def test_a_scan_is_sent_and_built(tmp_path: Path, models: Path, scan: Scan) -> N
         assert uploads is not None and ".las" in uploads.extensions and uploads.max_bytes > 0
         model = client.upload(tmp_path / "sent.las", "other name.las")
         assert model is not None and model.name == "other name"
-        model.wait_complete(timeout=120)
+        model.wait_complete()
         assert model.surfels == len(scan.xyz)
         with pytest.raises(surfcast.Unsupported):
             client.upload(tmp_path / "notes.doc")
@@ -114,10 +116,25 @@ def test_a_scan_is_waited_for(tmp_path: Path, scan: Scan) -> None:
     (tmp_path / "broken.las").write_bytes(b"LASF" + bytes(300))
     with server([tmp_path / "later.las", tmp_path / "broken.las"]) as running, running.connect() as client:
         later = client["later"]
-        later.wait_complete(timeout=120)
+        later.wait_complete()
         assert later.surfels == len(scan.xyz)
         assert not later.render(resolution=SIZE).preview
         with pytest.raises(surfcast.ServerFault, match="broken"):
-            client["broken"].wait_complete(timeout=120)
+            client["broken"].wait_complete()
         (failed,) = client.scans()
         assert failed.model == "broken" and failed.state == "failed" and failed.problem
+
+
+def test_a_build_may_take_longer_than_an_answer(running: RunningServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    building = surfcast.Scan("field", "building", 0.5, None, "", False)
+    states = iter([building] * 3)
+
+    async def state(_: aio.Model) -> surfcast.Scan | None:
+        return next(states, None)
+
+    monkeypatch.setattr(aio.Model, "_scan", state)
+    with running.connect(timeout=0.4) as client:
+        client["field"].wait_complete()  # three pauses of 0.2 s
+        states = itertools.repeat(building)
+        with pytest.raises(surfcast.Timeout, match="wait_complete"):
+            client["field"].wait_complete(timeout=0.1)
