@@ -215,8 +215,9 @@ def main():
         return run(build, arguments.base, arguments.seconds)
     wanted = set(arguments.programs.split("|"))
     rows, _ = affected(build, arguments.base)
-    print("\n".join(sorted({os.path.basename(test.program) for test, _ in rows
-                            if wanted & set(re.split("[-|]", test.labels))})))
+    for program in sorted({os.path.basename(test.program) for test, _ in rows
+                           if wanted & set(re.split("[-|]", test.labels))}):
+        print(program)
     return 0
 
 

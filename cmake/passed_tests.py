@@ -28,7 +28,7 @@ import affected_tests
 from affected_tests import ROOT
 
 # Files that no test is known to see count as seen by all, but for these.
-SEEN_BY_NONE = re.compile(r"^(bench|deploy|docker|\.ci)/|^[^/]+\.md$|^LICENSE$|^\.[^/]+$")
+SEEN_BY_NONE = re.compile(r"^(bench|deploy|docker|\.ci)/|^cmake/.*\.(py|sh)$|^[^/]+\.md$|^(LICENSE|Makefile|\.[^/]+)$")
 # Variables that do not change what a test does.
 HARMLESS = {"SURFCAST_CHECK_BASE", "SURFCAST_NEW_TESTS", "SURFCAST_PASSED_TESTS", "SURFCAST_UNSTABLE_TESTS"}
 DAYS_KEPT = 30

@@ -37,6 +37,10 @@ def main():
         wrong += [f"{path} is not seen by {name}" for name in sorted((seen_by & programs) - seen)]
         wrong += [f"{path} is seen by {name}" for name in sorted(not_seen_by & seen)]
         wrong += [f"there is no test {name}" for name in sorted(seen_by - programs - {"run_tests.sh"})]
+    script = source / "cmake/affected_tests.py"
+    printed = affected_tests.output_of(script, build, "--base", "HEAD", "--programs", "no_such_label")
+    if printed:  # not even an empty line, which would be a target
+        wrong.append(f"{printed!r} are programs with a label that there is not")
     print("\n".join(wrong) or "as expected")
     return 1 if wrong else 0
 

@@ -58,6 +58,11 @@ class KeysTest(unittest.TestCase):
         programs = {program for (_, program), key in self.before.items() if key}
         self.assertEqual(programs, self.changed_with("CMakeLists.txt"))
 
+    def test_do_not_change_with_scripts_that_only_run_tests(self):
+        for path in ("cmake/tidy.py", "Makefile", "README.md"):
+            self.assertTrue((source / path).exists(), path)
+            self.assertEqual(set(), self.changed_with(path))
+
     def test_change_with_the_machine_and_its_variables(self):
         with unittest.mock.patch.dict(os.environ, {"SURFCAST_DAMAGED_INPUTS": "7"}):
             self.assertNotEqual(passed_tests.machine(), self.keys.machine)
