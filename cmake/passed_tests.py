@@ -19,7 +19,7 @@ import json
 import os
 import pathlib
 import re
-import subprocess
+import shutil
 import sys
 import time
 import xml.etree.ElementTree
@@ -39,8 +39,10 @@ def folder():
 
 
 def machine():
-    """What a result depends on outside the checkout."""
-    packages = subprocess.run(["dpkg-query", "--show"], capture_output=True, text=True, check=False).stdout
+    """What a result depends on outside the checkout; None if this system does not tell the versions of its packages."""
+    if shutil.which("dpkg-query") is None:
+        return None
+    packages = affected_tests.output_of("dpkg-query", "--show")
     processor = re.findall("^(?:model name|flags).*", pathlib.Path("/proc/cpuinfo").read_text(), re.MULTILINE)[:2]
     devices = sorted(str(path) for pattern in ("dri/*", "nvidia*") for path in pathlib.Path("/dev").glob(pattern))
     variables = sorted(f"{name}={value}" for name, value in os.environ.items()
@@ -77,7 +79,7 @@ class Keys:
 
     def key(self, test):
         """None if what the test sees is not known, or not built."""
-        if not any(path.startswith(self.inside + "bin/") for path in test.seen):
+        if self.machine is None or not any(path.startswith(self.inside + "bin/") for path in test.seen):
             return None
         files = sorted(self.seen[test.name] | self.common)
         if any(content_of(path)[1] > self.built for path in files):
@@ -122,12 +124,15 @@ def main():
     parser.add_argument("results", type=pathlib.Path, nargs="?")
     arguments = parser.parse_args()
     build = arguments.build.resolve()
-    if arguments.action == "select":
-        select(build)
-    elif arguments.results is None:
+    if arguments.action == "record" and arguments.results is None:
         parser.error("record needs the results of ctest")
-    else:
-        record(build, arguments.results)
+    try:
+        if arguments.action == "select":
+            select(build)
+        else:
+            record(build, arguments.results)
+    except OSError as error:
+        return f"passed_tests.py: {error}"
     return 0
 
 

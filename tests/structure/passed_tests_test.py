@@ -69,6 +69,12 @@ class KeysTest(unittest.TestCase):
         with unittest.mock.patch.dict(os.environ, {"SURFCAST_CHECK_BASE": "7"}):
             self.assertEqual(passed_tests.machine(), self.keys.machine)
 
+    def test_are_missing_where_versions_of_packages_are_not_known(self):
+        with unittest.mock.patch.dict(os.environ, {"PATH": ""}):
+            self.assertIsNone(passed_tests.machine())
+        with unittest.mock.patch.object(self.keys, "machine", None):
+            self.assertEqual({None}, set(keys_of_programs(self.keys).values()))
+
     def test_are_missing_where_a_script_reads_the_sources(self):
         self.assertIsNone(self.before["documented_headers_test", "documented_headers_test.py"])
 
