@@ -133,9 +133,13 @@ class Test:
         self.seen = set(own)
         self.folders = {script_folder(path) + "/" for path in own if not path.startswith(graph.name("."))}
 
+    def is_beside(self, path):
+        """Whether a file lies where the test's scripts read files."""
+        return any(path.startswith(folder) for folder in self.folders)
+
     def distance(self, distances, changed):
         found = [distances[path] for path in self.seen if path in distances]
-        found += [1 for path in changed for folder in self.folders if path.startswith(folder)]
+        found += [1 for path in changed if self.is_beside(path)]
         return min(found, default=None)
 
 

@@ -34,7 +34,7 @@ HARMLESS = {"SURFCAST_CHECK_BASE", "SURFCAST_NEW_TESTS", "SURFCAST_PASSED_TESTS"
 DAYS_KEPT = 30
 
 
-def folder():
+def notes_folder():
     return pathlib.Path(os.environ.get("SURFCAST_PASSED_TESTS") or pathlib.Path.home() / ".cache/surfcast/passed-tests")
 
 
@@ -61,7 +61,6 @@ def content_of(path):
 
 class Keys:
     def __init__(self, build):
-        self.build = build
         self.inside = os.path.relpath(build, ROOT) + "/"
         self.graph = affected_tests.BuildGraph(build)
         self.tests = affected_tests.read_tests(self.graph)
@@ -74,7 +73,7 @@ class Keys:
 
     def files_of(self, test):
         made_of = self.graph.made_of(test.seen)
-        beside = {path for path in self.tracked if any(path.startswith(folder) for folder in test.folders)}
+        beside = {path for path in self.tracked if test.is_beside(path)}
         return {path for path in made_of if not path.startswith(("..", self.inside))} | beside
 
     def key(self, test):
@@ -93,9 +92,9 @@ def select(build):
     keys = Keys(build)
     known = {test.name: key for test in keys.tests if (key := keys.key(test))}
     (build / "test_keys.json").write_text(json.dumps(known))
-    passed = [name for name, key in known.items() if (folder() / key).exists()]
+    passed = [name for name, key in known.items() if (notes_folder() / key).exists()]
     for name in passed:
-        (folder() / known[name]).touch()
+        (notes_folder() / known[name]).touch()
     print("|".join(sorted(passed)))
 
 
@@ -107,7 +106,7 @@ def passed_names(results):
 
 def record(build, results):
     keys = json.loads((build / "test_keys.json").read_text())
-    notes = folder()
+    notes = notes_folder()
     notes.mkdir(parents=True, exist_ok=True)
     for name in passed_names(results):
         if name in keys:

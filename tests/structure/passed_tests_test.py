@@ -34,6 +34,7 @@ class KeysTest(unittest.TestCase):
         cls.keys = passed_tests.Keys(build)
         cls.keys.built = float("inf")  # sources may be edited meanwhile
         cls.before = keys_of_programs(cls.keys)
+        cls.programs = {program for (_, program), key in cls.before.items() if key}
 
     def changed_with(self, path):
         """The programs of tests whose keys are others if the content of a file is another."""
@@ -47,16 +48,14 @@ class KeysTest(unittest.TestCase):
         return {program for (name, program), key in self.before.items() if key and after[name, program] != key}
 
     def test_change_with_the_files_that_a_test_sees(self):
-        programs = {program for (_, program), key in self.before.items() if key}
         for path, seen_by, not_seen_by in EXPECTED:
             with self.subTest(path):
                 changed = self.changed_with(path)
-                self.assertEqual(set(), (seen_by & programs) - changed)
+                self.assertEqual(set(), (seen_by & self.programs) - changed)
                 self.assertEqual(set(), not_seen_by & changed)
 
     def test_change_all_with_a_file_of_cmake(self):
-        programs = {program for (_, program), key in self.before.items() if key}
-        self.assertEqual(programs, self.changed_with("CMakeLists.txt"))
+        self.assertEqual(self.programs, self.changed_with("CMakeLists.txt"))
 
     def test_do_not_change_with_scripts_that_only_run_tests(self):
         for path in ("cmake/tidy.py", "Makefile", "README.md"):

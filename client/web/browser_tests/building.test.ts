@@ -10,7 +10,7 @@ import { useYard } from './support/yard';
 
 const yard = useYard();
 
-/** For a build to end, ms. It runs at idle priority: all other programs of a busy machine go first. */
+/** Timeout of a build, ms. A server builds at the least priority, so other programs of a busy machine go first. */
 const buildTime = 270_000;
 
 /** A hilly square; larger than what is built before a test could look. */
