@@ -338,6 +338,6 @@ function(surfcast_add_cases program name parts filter labels)
       endif()
     endif()
     set_tests_properties(${test} PROPERTIES
-      LABELS "${labels}" TIMEOUT 600 COST ${cost} ENVIRONMENT "${environment}")
+      LABELS "${labels}" TIMEOUT 1800 COST ${cost} ENVIRONMENT "${environment}")
   endforeach()
 endfunction()
