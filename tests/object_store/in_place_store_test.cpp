@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -22,6 +23,8 @@ using testing::RangeServer;
 namespace fs = std::filesystem;
 
 constexpr const char* kCopc = "/scans/hills.copc.laz";
+constexpr const char* kEptFolder = "/scans/hills/";
+constexpr const char* kCoarse = "--spacing 8";  // of few blocks
 
 std::string file_content(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -50,18 +53,21 @@ class InPlaceStoreTest : public ::testing::Test {
     }
   }
 
-  /// Puts all files of the EPT folder into the store. Returns the URL of its description.
-  [[nodiscard]] std::string put_ept() {
-    for (const auto& entry : fs::recursive_directory_iterator(file("hills"))) {
-      if (!entry.is_regular_file()) continue;
-      const std::string path = "/scans/hills/" + fs::relative(entry.path(), file("hills")).string();
-      if (path.ends_with("/ept.json")) {
-        server_.put(path, file_content(entry.path()));
-      } else {
-        server_.put_page(path, file_content(entry.path()));
-      }
+  /// The files of an EPT folder but its description, by their places in the store.
+  [[nodiscard]] std::map<std::string, std::string> tiles(const std::string& name) const {
+    std::map<std::string, std::string> contents;
+    for (const auto& entry : fs::recursive_directory_iterator(file(name))) {
+      if (!entry.is_regular_file() || entry.path().filename() == "ept.json") continue;
+      contents[kEptFolder + fs::relative(entry.path(), file(name)).string()] = file_content(entry.path());
     }
-    return server_.url("/scans/hills/ept.json");
+    return contents;
+  }
+
+  /// Puts all files of an EPT folder into the store. Returns the URL of its description.
+  [[nodiscard]] std::string put_ept() {
+    for (const auto& [path, content] : tiles("hills")) server_.put_page(path, content);
+    server_.put(kEptFolder + std::string("ept.json"), file_content(file("hills/ept.json")));
+    return server_.url(kEptFolder + std::string("ept.json"));
   }
 
   [[nodiscard]] client::ProgramOutcome draw(const std::string& scan, const std::string& flags = {}) const {
@@ -116,10 +122,40 @@ TEST_F(InPlaceStoreTest, InspectPickAndExportTakeUrls) {
 }
 
 TEST_F(InPlaceStoreTest, WhatPassesChangesNoPixel) {
-  const std::string expected = drawn(file("hills.copc.laz"));
-  for (const Fault fault : {Fault::kBusy, Fault::kCut, Fault::kHanging, Fault::kStalling}) {
-    server_.fail(fault, 2, /*after=*/2);
-    EXPECT_TRUE(drawn(server_.url(kCopc)) == expected) << static_cast<int>(fault);
+  for (const std::string& url : {server_.url(kCopc), put_ept()}) {
+    const std::string expected = drawn(url);
+    for (const Fault fault : {Fault::kBusy, Fault::kCut, Fault::kHanging, Fault::kStalling}) {
+      server_.fail(fault, 2, /*after=*/2);
+      EXPECT_TRUE(drawn(url) == expected) << url << ' ' << static_cast<int>(fault);
+    }
+  }
+}
+
+TEST_F(InPlaceStoreTest, AFaultOfAnyOneAnswerIsAnErrorInTimeOrChangesNoPixel) {
+  for (const std::string& url : {server_.url(kCopc), put_ept()}) {
+    server_.forget_requests();
+    const auto start = std::chrono::steady_clock::now();
+    const std::string expected = drawn(url, kCoarse);
+    const auto usual = std::chrono::steady_clock::now() - start;
+    const size_t answers = server_.requests().size();
+    ASSERT_GE(answers, 3U);
+    for (const Fault fault : {Fault::kAbsent, Fault::kForbidden, Fault::kReplaced, Fault::kBusy, Fault::kCut,
+                              Fault::kHanging, Fault::kStalling}) {
+      for (size_t answer = 0; answer < answers; ++answer) {
+        server_.fail(fault, 1, answer);
+        const auto begin = std::chrono::steady_clock::now();
+        const client::ProgramOutcome outcome = draw(url, kCoarse);
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8) + 2 * usual);
+        const std::string what = url + ", fault " + std::to_string(static_cast<int>(fault)) + " of answer " +
+                                 std::to_string(answer) + ": " + outcome.output;
+        if (outcome.code == 0) {
+          EXPECT_TRUE(file_content(picture()) == expected) << what;
+        } else {
+          EXPECT_THAT(outcome.output, HasSubstr("surfcastd: " + url)) << what;
+          EXPECT_FALSE(fs::exists(picture())) << what;
+        }
+      }
+    }
   }
 }
 
@@ -127,17 +163,25 @@ TEST_F(InPlaceStoreTest, WhatDoesNotPassIsOneLineInTimeAndNoPicture) {
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(draw(file("hills.copc.laz")).code, 0);
   const auto usual = std::chrono::steady_clock::now() - start;
-  for (const Fault fault :
-       {Fault::kWholeObject, Fault::kForbidden, Fault::kAbsent, Fault::kNoSuchRange, Fault::kBusy, Fault::kCut,
-        Fault::kHanging, Fault::kStalling, Fault::kWrongRange, Fault::kShiftedRange, Fault::kReplaced}) {
+  const auto expect_error = [&](const std::string& url, Fault fault) {
     server_.fail(fault, 1000, /*after=*/2);
     const auto begin = std::chrono::steady_clock::now();
-    const client::ProgramOutcome outcome = draw(server_.url(kCopc));
+    const client::ProgramOutcome outcome = draw(url);
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8) + 2 * usual)
         << "without the flags it would be ten seconds more than usual";
     EXPECT_EQ(outcome.code, 1) << static_cast<int>(fault);
-    EXPECT_THAT(outcome.output, HasSubstr("surfcastd: " + server_.url(kCopc)));
-    EXPECT_FALSE(fs::exists(picture())) << static_cast<int>(fault);
+    EXPECT_THAT(outcome.output, HasSubstr("surfcastd: " + url));
+    EXPECT_FALSE(fs::exists(picture())) << url << ' ' << static_cast<int>(fault);
+  };
+  for (const Fault fault :
+       {Fault::kWholeObject, Fault::kForbidden, Fault::kAbsent, Fault::kNoSuchRange, Fault::kBusy, Fault::kCut,
+        Fault::kHanging, Fault::kStalling, Fault::kWrongRange, Fault::kShiftedRange, Fault::kReplaced}) {
+    expect_error(server_.url(kCopc), fault);
+  }
+  const std::string ept = put_ept();
+  for (const Fault fault : {Fault::kForbidden, Fault::kAbsent, Fault::kBusy, Fault::kCut, Fault::kHanging,
+                            Fault::kStalling, Fault::kReplaced}) {
+    expect_error(ept, fault);
   }
 }
 
@@ -151,6 +195,27 @@ TEST_F(InPlaceStoreTest, AScanThatIsReplacedWhileItIsDrawnIsOpenedAnewAndNeverMi
     server_.put_after(answers, kCopc, other);
     EXPECT_TRUE(drawn(server_.url(kCopc)) == expected) << answers;
   }
+}
+
+TEST_F(InPlaceStoreTest, TilesThatAreReplacedWhileTheyAreDrawnAreNeverMixed) {
+  write_scan("other", 100);
+  const std::string url = put_ept();
+  const std::string former = drawn(url);
+  const std::string expected = drawn(file("other"));
+  ASSERT_FALSE(expected == former);
+  for (const size_t answers : {1U, 2U, 3U, 4U}) {  // after the description, the hierarchy, the root, another tile
+    ASSERT_EQ(put_ept(), url);
+    server_.put_pages_after(answers, tiles("other"));
+    EXPECT_TRUE(drawn(url) == expected) << answers;
+  }
+}
+
+TEST_F(InPlaceStoreTest, AHierarchyThatACacheKeptDoesNotMakeOldTilesNewer) {
+  const std::string url = put_ept();
+  const std::string expected = drawn(url);
+  // The cache answers with the date when it got the page, an hour before the tiles were written, and how long ago.
+  server_.set_page_headers("Date: Fri, 15 Jan 2027 07:00:00 GMT\r\nAge: 3600\r\n");
+  EXPECT_TRUE(drawn(url) == expected);
 }
 
 }  // namespace

@@ -124,6 +124,15 @@ TEST(RangeAnswerTest, WithoutAStrongEtagNothingIsOpened) {
   }
 }
 
+TEST(RangeAnswerTest, AnObjectIsNewerThanItsFolderBySecondsOfTheStore) {
+  HttpAnswer answer = good_answer();
+  EXPECT_FALSE(is_newer(answer, 1000)) << "the store does not say when it was written";
+  answer.written = 1000;
+  EXPECT_FALSE(is_newer(answer, 1000));
+  EXPECT_TRUE(is_newer(answer, 999));
+  EXPECT_FALSE(is_newer(answer, std::nullopt));
+}
+
 TEST(RangeAnswerTest, PausesDoubleAndVaryByHalf) {
   using std::chrono::milliseconds;
   EXPECT_EQ(retry_pause(1, 0), milliseconds(50));

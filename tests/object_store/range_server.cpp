@@ -1,6 +1,7 @@
 #include "object_store/range_server.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <stdexcept>
@@ -74,6 +75,14 @@ std::string head_of(const std::string& status, uint64_t length, const std::strin
   return "HTTP/1.1 " + status + "\r\nContent-Length: " + std::to_string(length) + "\r\n" + headers + "\r\n";
 }
 
+/// As in Last-Modified.
+std::string http_date(time_t time) {
+  std::tm parts{};
+  ::gmtime_r(&time, &parts);
+  std::array<char, 64> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &parts)};
+}
+
 std::string value_of(const RangeServer::Request& request, const std::string& name) {
   const auto found = request.headers.find(name);
   return found == request.headers.end() ? std::string() : found->second;
@@ -138,6 +147,12 @@ void RangeServer::put_after(size_t answers, const std::string& path, std::string
 
 /// Called for each request, with mutex_ locked.
 void RangeServer::put_later() {
+  if (!later_pages_.pages.empty() && later_pages_.answers-- == 0) {
+    constexpr time_t kMinute = 60;
+    now_ += kMinute;
+    for (auto& [target, bytes] : later_pages_.pages) pages_[target] = {std::move(bytes), now_};
+    later_pages_ = {};
+  }
   if (later_.path.empty() || later_.answers-- > 0) return;
   objects_[later_.path] = {std::move(later_.bytes), ++versions_};
   later_ = {};
@@ -145,7 +160,17 @@ void RangeServer::put_later() {
 
 void RangeServer::put_page(const std::string& target, std::string bytes) {
   const std::lock_guard lock(mutex_);
-  pages_[target] = std::move(bytes);
+  pages_[target] = {std::move(bytes), now_};
+}
+
+void RangeServer::put_pages_after(size_t answers, std::map<std::string, std::string> pages) {
+  const std::lock_guard lock(mutex_);
+  later_pages_ = {answers, std::move(pages)};
+}
+
+void RangeServer::set_page_headers(std::string headers) {
+  const std::lock_guard lock(mutex_);
+  page_headers_ = std::move(headers);
 }
 
 void RangeServer::set_etag_prefix(std::string prefix) {
@@ -246,6 +271,14 @@ void RangeServer::serve(int connection) {
   ::close(connection);
 }
 
+void RangeServer::break_off(Fault fault, Answer& answer) {
+  const bool half = fault == Fault::kCut || fault == Fault::kStalling;
+  answer.sent = half ? answer.body.size() / 2 : answer.body.size();
+  answer.ends = fault == Fault::kCut;
+  answer.hangs = fault == Fault::kStalling;
+  answer.drips = fault == Fault::kDripping;
+}
+
 Fault RangeServer::next_fault() {
   if (faults_.empty()) return Fault::kNone;
   const Fault fault = faults_.front();
@@ -269,7 +302,7 @@ RangeServer::Answer RangeServer::answer(const Request& request) {
   }
   if (fault == Fault::kHanging) return {{}, {}, 0, true};
   if (const auto page = pages_.find(request.target); page != pages_.end()) {
-    return {head_of("200 OK", page->second.size()), page->second, page->second.size()};
+    return page_answer(page->second, fault);
   }
   const auto object = objects_.find(request.target.substr(0, request.target.find('?')));
   if (object == objects_.end()) return {head_of("404 Not Found", 0), {}};
@@ -278,6 +311,15 @@ RangeServer::Answer RangeServer::answer(const Request& request) {
     return {head_of("412 Precondition Failed", 0), {}};
   }
   return range_answer(request, object->second, fault);
+}
+
+RangeServer::Answer RangeServer::page_answer(const Page& page, Fault fault) const {
+  const std::string headers = page_headers_.value_or("Date: " + http_date(now_) + "\r\n");
+  Answer answer;
+  answer.body = page.bytes;
+  answer.head = head_of("200 OK", page.bytes.size(), headers + "Last-Modified: " + http_date(page.written) + "\r\n");
+  break_off(fault, answer);
+  return answer;
 }
 
 RangeServer::Answer RangeServer::range_answer(const Request& request, const Object& object, Fault fault) const {
@@ -302,11 +344,7 @@ RangeServer::Answer RangeServer::range_answer(const Request& request, const Obje
       head_of("206 Partial Content", count,
               (fault == Fault::kOtherVersion ? "ETag: \"another\"\r\n" : validator) + "Content-Range: bytes " +
                   std::to_string(stated) + "-" + std::to_string(last) + "/" + std::to_string(size) + "\r\n");
-  const bool half = fault == Fault::kCut || fault == Fault::kStalling;
-  answer.sent = half ? count / 2 : count;
-  answer.ends = fault == Fault::kCut;
-  answer.hangs = fault == Fault::kStalling;
-  answer.drips = fault == Fault::kDripping;
+  break_off(fault, answer);
   return answer;
 }
 

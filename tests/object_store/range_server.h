@@ -3,9 +3,11 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <ctime>
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -53,8 +55,12 @@ class RangeServer {
   void put(const std::string& path, std::string bytes);
   /// Does the same after so many further answers.
   void put_after(size_t answers, const std::string& path, std::string bytes);
-  /// Answers requests for this target, with its query, with 200 and these bytes.
+  /// Answers requests for this target, with its query, with 200 and these bytes, which were written now.
   void put_page(const std::string& target, std::string bytes);
+  /// Does the same with several a minute later, after so many further answers.
+  void put_pages_after(size_t answers, std::map<std::string, std::string> pages);
+  /// Headers of pages from now on, beside Content-Length and Last-Modified: by default the date.
+  void set_page_headers(std::string headers);
   /// ETags that the server states from now on: "" none, "W/" weak ones.
   void set_etag_prefix(std::string prefix);
   /// After `after` further answers, `count` of them have this fault.
@@ -79,11 +85,19 @@ class RangeServer {
     std::string bytes;
     uint64_t version = 0;
   };
+  struct Page {
+    std::string bytes;
+    time_t written = 0;
+  };
   /// What put_after waits with.
   struct LaterObject {
     size_t answers = 0;
     std::string path;
     std::string bytes;
+  };
+  struct LaterPages {
+    size_t answers = 0;
+    std::map<std::string, std::string> pages;
   };
   struct Answer {
     std::string head;
@@ -98,6 +112,9 @@ class RangeServer {
   void serve(int connection);
   Answer answer(const Request& request);
   Answer range_answer(const Request& request, const Object& object, Fault fault) const;
+  /// Of its body, what a fault lets through.
+  static void break_off(Fault fault, Answer& answer);
+  [[nodiscard]] Answer page_answer(const Page& page, Fault fault) const;
   [[nodiscard]] std::string etag_of(const Object& object) const;
   Fault next_fault();
   void put_later();
@@ -109,10 +126,13 @@ class RangeServer {
   std::condition_variable changed_;
   bool held_ = false;
   std::map<std::string, Object> objects_;
-  std::map<std::string, std::string> pages_;
+  std::map<std::string, Page> pages_;
+  std::optional<std::string> page_headers_;
+  time_t now_ = 1'800'000'000;  ///< of the clock of the server, seconds since 1970
   uint64_t versions_ = 0;
   std::string etag_prefix_ = "\"";
   LaterObject later_;
+  LaterPages later_pages_;
   std::deque<Fault> faults_;
   std::vector<Request> requests_;
   uint64_t bytes_ = 0;

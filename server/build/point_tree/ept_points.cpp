@@ -15,12 +15,35 @@ scan::EptKey ept_key(const ldc::OctreeKey& key) {
   return {key.depth, key.x, key.y, key.z};
 }
 
+/// The description, which counts as replaced when files of its folder are.
+class DescribedFolder : public ByteSource {
+ public:
+  DescribedFolder(std::unique_ptr<const ByteSource> description, std::unique_ptr<const FileFolder> folder)
+      : description_(std::move(description)), folder_(std::move(folder)) {}
+
+  [[nodiscard]] const std::string& name() const override { return description_->name(); }
+  [[nodiscard]] uint64_t size() const override { return description_->size(); }
+  [[nodiscard]] Status read(uint64_t offset, std::span<std::byte> bytes) const override {
+    return description_->read(offset, bytes);
+  }
+  void prefetch(std::span<const ByteRange> ranges) const override { description_->prefetch(ranges); }
+  void forget(const ByteRange& range) const override { description_->forget(range); }
+  [[nodiscard]] std::string version() const override { return description_->version(); }
+  [[nodiscard]] int descriptor() const override { return description_->descriptor(); }
+  void look_for_replacement() const override { description_->look_for_replacement(); }
+  [[nodiscard]] bool replaced() const override { return description_->replaced() || folder_->replaced(); }
+  [[nodiscard]] const FileFolder& folder() const { return *folder_; }
+
+ private:
+  std::unique_ptr<const ByteSource> description_;
+  std::unique_ptr<const FileFolder> folder_;
+};
+
 class EptReader : public NodeReader {
  public:
   EptReader(std::unique_ptr<const ByteSource> description, std::unique_ptr<const FileFolder> folder,
             scan::EptDescription ept, scan::EptColumns columns, std::vector<std::byte> root)
-      : description_(std::move(description)),
-        folder_(std::move(folder)),
+      : source_(std::move(description), std::move(folder)),
         ept_(std::move(ept)),
         columns_(std::move(columns.columns)),
         root_(std::move(root)) {
@@ -30,18 +53,18 @@ class EptReader : public NodeReader {
 
   [[nodiscard]] const scan::RowTraits& traits() const override { return traits_; }
   [[nodiscard]] const std::vector<scan::ColumnInfo>& columns() const override { return columns_; }
-  [[nodiscard]] const ByteSource& source() const override { return *description_; }
+  [[nodiscard]] const ByteSource& source() const override { return source_; }
   void prefetch(std::span<const Node> nodes) const override {
     std::vector<std::string> names;
     names.reserve(nodes.size());
     for (const Node& node : nodes) names.push_back(name_of_tile(node));
-    folder_->prefetch(names);
+    source_.folder().prefetch(names);
   }
-  void forget(const Node& node) const override { folder_->forget(name_of_tile(node)); }
+  void forget(const Node& node) const override { source_.folder().forget(name_of_tile(node)); }
 
   [[nodiscard]] Result<scan::PointTable> read(const Node& node) const override {
     if (node.key.depth == 0) return points_of_tile(node, root_);
-    const Result<std::vector<std::byte>> tile = folder_->read(name_of_tile(node), kMaxTile);
+    const Result<std::vector<std::byte>> tile = source_.folder().read(name_of_tile(node), kMaxTile);
     if (!tile) return fail(tile);
     return points_of_tile(node, *tile);
   }
@@ -56,8 +79,7 @@ class EptReader : public NodeReader {
     return scan::ept_tile_name(ept_, ept_key(node.key));
   }
 
-  std::unique_ptr<const ByteSource> description_;
-  std::unique_ptr<const FileFolder> folder_;
+  const DescribedFolder source_;
   scan::EptDescription ept_;
   std::vector<scan::ColumnInfo> columns_;
   std::vector<std::byte> root_;  ///< its tile, which says what all tiles have

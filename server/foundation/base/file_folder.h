@@ -22,6 +22,8 @@ class FileFolder {
   virtual void prefetch(std::span<const std::string> names) const = 0;
   /// A file that was prefetched will not be read.
   virtual void forget(const std::string& name) const = 0;
+  /// True once reading has failed with kReplaced: files are newer than the folder was opened. It has to be opened anew.
+  [[nodiscard]] virtual bool replaced() const { return false; }
 };
 
 }  // namespace surfcast

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <charconv>
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -34,6 +37,8 @@ struct Transfer {
   std::array<char, CURL_ERROR_SIZE> reason{};
   Clock::time_point progress{};  ///< of the last byte
   Clock::time_point deadline{};
+  std::optional<int64_t> date{};  ///< of a cache between, if `age` is above 0
+  int64_t age = 0;
   size_t refusal_bytes = 0;
   bool too_long = false;
 
@@ -45,17 +50,34 @@ struct Transfer {
   }
 };
 
-void forget_answer(HttpAnswer& answer) {
-  const Clock::time_point sent = answer.sent;
-  answer = {};
-  answer.sent = sent;
+void forget_answer(Transfer& transfer) {
+  const Clock::time_point sent = transfer.answer.sent;
+  transfer.answer = {};
+  transfer.answer.sent = sent;
+  transfer.date.reset();
+  transfer.age = 0;
+}
+
+/// A date of HTTP, seconds since 1970.
+std::optional<int64_t> parse_date(const std::string& text) {
+  const time_t time = curl_getdate(text.c_str(), nullptr);
+  if (time < 0) return std::nullopt;
+  return int64_t{time};
+}
+
+/// The header "Age", seconds; 0 if it is none.
+int64_t parse_age(std::string_view text) {
+  constexpr int64_t kMaxAge = int64_t{1} << 31;  // RFC 9111, 1.2.2
+  int64_t age = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), age);
+  return code == std::errc() ? std::clamp<int64_t>(age, 0, kMaxAge) : 0;
 }
 
 size_t take_header(char* data, size_t one, size_t count, void* user) {
   auto& transfer = *static_cast<Transfer*>(user);
   transfer.progress = Clock::now();
   const std::string_view line(data, one * count);
-  if (line.starts_with("HTTP/")) forget_answer(transfer.answer);  // one before this one: 100 Continue
+  if (line.starts_with("HTTP/")) forget_answer(transfer);  // one before this one: 100 Continue
   const size_t colon = line.find(':');
   if (colon == std::string_view::npos) return line.size();
   const std::string_view name = line.substr(0, colon);
@@ -63,6 +85,10 @@ size_t take_header(char* data, size_t one, size_t count, void* user) {
   if (equal_in_any_case(name, "etag")) transfer.answer.etag = value;
   if (equal_in_any_case(name, "content-range")) transfer.answer.content_range = value;
   if (equal_in_any_case(name, "location")) transfer.answer.location = value;
+  if (equal_in_any_case(name, "last-modified")) transfer.answer.written = parse_date(value);
+  if (equal_in_any_case(name, "date")) transfer.date = parse_date(value);
+  if (equal_in_any_case(name, "age")) transfer.age = parse_age(value);
+  if (transfer.date) transfer.answer.answered = *transfer.date + transfer.age;
   return line.size();
 }
 

@@ -41,6 +41,10 @@ struct HttpAnswer {
   std::string etag;
   std::string content_range;
   std::string location;
+  /// By the clock of the store, seconds since 1970: when it answered (Date and Age), and when the object was last
+  /// written (Last-Modified). None where it does not say.
+  std::optional<int64_t> answered;
+  std::optional<int64_t> written;
   std::vector<std::byte> body;
   HttpRequest::Clock::time_point sent{};  ///< when the request was
 };

@@ -135,4 +135,8 @@ std::optional<AnswerFault> check_whole_answer(const HttpAnswer& answer) {
   return check_status(answer, kOk);
 }
 
+bool is_newer(const HttpAnswer& answer, std::optional<int64_t> opened) {
+  return opened && answer.written && *answer.written > *opened;
+}
+
 }  // namespace surfcast::object_store

@@ -44,4 +44,8 @@ std::optional<AnswerFault> check_first_answer(const HttpAnswer& answer, uint64_t
 /// Checks the answer to a request without a range, of which status 200 is wanted.
 std::optional<AnswerFault> check_whole_answer(const HttpAnswer& answer);
 
+/// True if the object of an answer was written after `opened`, a time by the clock of the store. Times are whole
+/// seconds, so one that was written within the same second passes, and so does one whose time is not known.
+bool is_newer(const HttpAnswer& answer, std::optional<int64_t> opened);
+
 }  // namespace surfcast::object_store

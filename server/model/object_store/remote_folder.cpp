@@ -5,7 +5,10 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <utility>
+
+#include "object_store/range_answer.h"
 
 namespace surfcast::object_store {
 namespace {
@@ -71,6 +74,11 @@ class RemoteFolder::State : public std::enable_shared_from_this<RemoteFolder::St
     start_more();
   }
 
+  bool replaced() {
+    const std::lock_guard lock(mutex_);
+    return replaced_;
+  }
+
  private:
   // All of what follows is called with mutex_ locked, except `arrive`.
 
@@ -114,12 +122,21 @@ class RemoteFolder::State : public std::enable_shared_from_this<RemoteFolder::St
                  });
   }
 
+  /// The bytes of an answer, unless they are newer than the folder was opened.
+  Result<std::vector<std::byte>> take(Result<HttpAnswer> answer) {
+    if (!answer) return fail(answer);
+    if (!opened_) opened_ = answer->answered;
+    if (!is_newer(*answer, opened_)) return std::move(answer->body);
+    replaced_ = true;
+    return fail(ErrorKind::kReplaced, "was replaced in the store since the folder was opened");
+  }
+
   /// Called by the thread of the client.
   void arrive(const std::string& name, const ObjectFetchPointer& fetch, Result<HttpAnswer> answer) {
     {
       const std::lock_guard lock(mutex_);
       fetch->done = true;
-      fetch->bytes = std::move(answer).map([](HttpAnswer whole) { return std::move(whole.body); });
+      fetch->bytes = take(std::move(answer));
       drop(name, fetch);
       start_more();
     }
@@ -133,6 +150,8 @@ class RemoteFolder::State : public std::enable_shared_from_this<RemoteFolder::St
   std::map<std::string, ObjectFetchPointer> fetches_;
   std::deque<std::string> queue_;  ///< announced, and not started
   size_t ahead_ = 0;               ///< started, and still in fetches_
+  std::optional<int64_t> opened_;  ///< when the first answer came, seconds by the clock of the store
+  bool replaced_ = false;
 };
 
 RemoteFolder::RemoteFolder(const HttpClient& client, std::string url)
@@ -149,6 +168,10 @@ void RemoteFolder::prefetch(std::span<const std::string> names) const {
 
 void RemoteFolder::forget(const std::string& name) const {
   state_->forget(name);
+}
+
+bool RemoteFolder::replaced() const {
+  return state_->replaced();
 }
 
 }  // namespace surfcast::object_store
