@@ -128,7 +128,7 @@ void add_export_command(CLI::App& app, Status& outcome) {
       ->add_option(
           "--output", command->output,
           "File to write; .las, .laz, .copc.laz, .ply, .csv or .npy at its end names the format. FOLDER/ept.json "
-          "writes a new folder as EPT")
+          "writes a new folder as EPT, FOLDER/metadata.json as Potree 2")
       ->required();
   add_selection_flags(*export_command, command->options.selection);
   export_command
@@ -138,8 +138,8 @@ void add_export_command(CLI::App& app, Status& outcome) {
   export_command
       ->add_option(
           "--chunk", command->options.encoding.chunk_size,
-          "Points in a chunk of LAZ, which is decoded as a whole; of COPC and EPT: cells with at most as many are "
-          "not divided")
+          "Points in a chunk of LAZ, which is decoded as a whole; of COPC, EPT and Potree: cells with at most as "
+          "many are not divided")
       ->check(CLI::Range(1U, 1U << 24))
       ->capture_default_str();
   export_command

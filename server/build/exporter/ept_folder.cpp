@@ -1,20 +1,12 @@
-#include <cerrno>
-#include <cstring>
 #include <string>
-#include <system_error>
 #include <utility>
 
-#include <fcntl.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <unistd.h>
 
-#include "base/atomic_file.h"
-#include "base/contract.h"
-#include "base/descriptor.h"
-#include "base/scratch_folder.h"
 #include "exporter/even_sample.h"
 #include "exporter/las_bytes.h"
 #include "exporter/las_coding.h"
+#include "exporter/new_folder.h"
 #include "exporter/node_pages.h"
 #include "exporter/octree_files.h"
 #include "scan/json_access.h"
@@ -105,13 +97,8 @@ Json box_of(const glm::dvec3& low, const glm::dvec3& high) {
 
 class EptFolder : public NodeBatch {
  public:
-  EptFolder(fs::path folder, ScratchFolder scratch, LasHead head, uint64_t most_bytes, size_t most_entries)
-      : NodeBatch(most_bytes),
-        folder_(std::move(folder)),
-        scratch_(std::move(scratch)),
-        unfinished_(scratch_.path() / "ept"),
-        head_(std::move(head)),
-        most_entries_(most_entries) {
+  EptFolder(NewFolder folder, LasHead head, uint64_t most_bytes, size_t most_entries)
+      : NodeBatch(most_bytes), folder_(std::move(folder)), head_(std::move(head)), most_entries_(most_entries) {
     head_.compressed = true;
     head_.extended.clear();
     std::erase_if(head_.records, [](const Bytes& record) { return !is_of_every_tile(record); });
@@ -119,35 +106,23 @@ class EptFolder : public NodeBatch {
     put(head_.header, kExtendedNumber, uint32_t{0});
   }
 
-  Status make_folders() {
-    std::error_code code;
-    fs::create_directory(unfinished_, code);
-    if (!code) fs::create_directory(unfinished_ / "ept-data", code);
-    if (!code) fs::create_directory(unfinished_ / "ept-hierarchy", code);
-    return code ? failed("cannot create", code.message()) : Status();
-  }
-
   Result<uint64_t> finish(const OctreeFacts& facts) override {
     Status status = write_waiting();
     if (status) status = write_hierarchy();
     if (status) status = write_text("ept.json", description(facts).dump(1));
-    if (status) status = put_in_place();
+    if (status) status = folder_.put_in_place();
     if (!status) return fail(status);
     return bytes_;
   }
 
  private:
-  [[nodiscard]] tl::unexpected<Error> failed(const char* what, const std::string& why) const {
-    return fail(ErrorKind::kIo, folder_.string() + ": " + what + ": " + why);
-  }
-
   Status write(std::vector<OctreeNode> nodes) override {
     std::vector<Status> outcomes(nodes.size());
     std::vector<size_t> sizes(nodes.size());
     oneapi::tbb::parallel_for(size_t{0}, nodes.size(), [&](size_t i) {
       const Bytes tile = tile_of(nodes[i].records);
       sizes[i] = tile.size();
-      outcomes[i] = write_file("ept-data/" + name_of(nodes[i].key) + ".laz", tile);
+      outcomes[i] = folder_.write("ept-data/" + name_of(nodes[i].key) + ".laz", tile);
     });
     for (size_t i = 0; i < nodes.size(); ++i) {
       if (!outcomes[i]) return std::move(outcomes[i]);
@@ -189,52 +164,27 @@ class EptFolder : public NodeBatch {
   }
 
   [[nodiscard]] Json description(const OctreeFacts& facts) const {
-    LasHead head = head_;
-    add_laszip_record(head);
-    fill_in_header(head, facts.counts, bytes_before_points(head).size() - sizeof(int64_t));
-    const Bytes bytes = bytes_before_points(head);
-    const Result<scan::LasHeader> header = scan::parse_las_header(bytes);
-    SURFCAST_EXPECTS(header);
-    const auto bound = [&head](size_t at) {
-      return glm::dvec3(scan::load<double>(&head.header[at]), scan::load<double>(&head.header[at + 16]),
-                        scan::load<double>(&head.header[at + 32]));
-    };
+    const scan::LasHeader header = header_of(head_);
+    const geometry::Box bounds = bounds_of(header.grid, facts.counts);
     Json srs = Json::object();
-    if (header->crs.find('[') != std::string::npos) srs["wkt"] = header->crs;
+    if (header.crs.find('[') != std::string::npos) srs["wkt"] = header.crs;
     return {{"version", "1.0.0"},
             {"dataType", "laszip"},
             {"hierarchyType", "json"},
             {"points", facts.counts.points},
             {"bounds", box_of(facts.cube.min, facts.cube.min + facts.cube.side)},
-            {"boundsConforming", box_of(bound(187), bound(179))},
+            {"boundsConforming", box_of(bounds.min, bounds.max)},
             {"span", static_cast<int>(1 / kSampleSpacing)},
-            {"schema", schema_of(*header)},
+            {"schema", schema_of(header)},
             {"srs", srs}};
   }
 
   Status write_text(const std::string& name, const std::string& text) {
     bytes_ += text.size();
-    return write_file(name, std::as_bytes(std::span(text)));
+    return folder_.write(name, std::as_bytes(std::span(text)));
   }
 
-  [[nodiscard]] Status write_file(const std::string& name, std::span<const std::byte> bytes) const {
-    Result<AtomicFile> file = AtomicFile::create(unfinished_ / name);
-    Status status = file ? file->append(bytes) : Status(fail(file));
-    return status ? file->commit_unflushed() : status;
-  }
-
-  /// Flushes everything at once: there may be very many files.
-  Status put_in_place() {
-    const Descriptor folder(::open(unfinished_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (folder.get() < 0 || ::syncfs(folder.get()) != 0) return failed("cannot flush", std::strerror(errno));
-    std::error_code code;
-    fs::rename(unfinished_, folder_, code);
-    return code ? failed("cannot rename into place", code.message()) : Status();
-  }
-
-  fs::path folder_;
-  ScratchFolder scratch_;
-  fs::path unfinished_;
+  NewFolder folder_;
   LasHead head_;
   size_t most_entries_;
   std::vector<ldc::OctreeKey> keys_;
@@ -246,19 +196,12 @@ class EptFolder : public NodeBatch {
 
 Result<std::unique_ptr<NodeBatch>> create_ept(const fs::path& target, LasHead head, uint64_t most_bytes,
                                               size_t most_entries) {
-  const fs::path folder = target.parent_path();
-  std::error_code ignored;
-  if (folder.filename().empty() || (fs::exists(folder, ignored) && !fs::is_empty(folder, ignored))) {
-    return fail(ErrorKind::kInvalidInput, target.string() + ": name a new folder for it, like scan/ept.json");
+  Result<NewFolder> folder = NewFolder::create(target);
+  if (!folder) return fail(folder);
+  for (const char* name : {"ept-data", "ept-hierarchy"}) {
+    if (Status status = folder->make_folder(name); !status) return fail(status);
   }
-  const fs::path parent = folder.parent_path().empty() ? "." : folder.parent_path();
-  const std::string prefix = ".surfcast-" + folder.filename().string() + "-";
-  remove_abandoned_folders(parent, prefix);
-  Result<ScratchFolder> scratch = ScratchFolder::create(parent, prefix);
-  if (!scratch) return fail(scratch);
-  auto ept = std::make_unique<EptFolder>(folder, std::move(*scratch), std::move(head), most_bytes, most_entries);
-  if (Status status = ept->make_folders(); !status) return fail(status);
-  return ept;
+  return std::make_unique<EptFolder>(std::move(*folder), std::move(head), most_bytes, most_entries);
 }
 
 }  // namespace surfcast::exporter

@@ -57,6 +57,7 @@ struct TargetForm {
 Result<TargetForm> form_of(const fs::path& target) {
   const std::string extension = lower_extension(target);
   if (target.filename() == "ept.json") return TargetForm{PointFormat::kLaz, OctreeForm::kEpt};
+  if (target.filename() == "metadata.json") return TargetForm{PointFormat::kLaz, OctreeForm::kPotree2};
   if (extension == ".laz" && lower_extension(target.stem()) == ".copc")
     return TargetForm{PointFormat::kLaz, OctreeForm::kCopc};
   if (!extension.empty()) {
@@ -66,7 +67,7 @@ Result<TargetForm> form_of(const fs::path& target) {
   for (const auto& [name, format] : kPointFormats) names += (names.empty() ? "." : ", .") + std::string(name);
   return fail(ErrorKind::kUnsupported, target.string() +
                                            ": its extension names none of the formats that are written: " + names +
-                                           ", .copc.laz, ept.json");
+                                           ", .copc.laz, ept.json, metadata.json");
 }
 
 bool is_las(PointFormat format) {

@@ -19,7 +19,7 @@ struct ExportOptions {
   scan::Selection selection;  ///< the points that are taken; for models see ModelSelection
   scan::DecodingLimit limit;  ///< of formats that can only be decoded whole
   EncoderOptions encoding;
-  OctreeOptions octree;  ///< of COPC and EPT
+  OctreeOptions octree;  ///< of COPC, EPT and Potree 2
 };
 
 struct ExportReport {
@@ -30,10 +30,10 @@ struct ExportReport {
 
 /// Writes the selected points of a scan, in file order, into a file whose extension names its format. The target
 /// appears whole or not at all. LAS and LAZ to LAS and LAZ: records are copied byte by byte, see las_copy.h. COPC
-/// (.copc.laz) and EPT (a file ept.json in a folder that is not there yet) hold the points in an octree, see
-/// point_octree.h, as records of LAS 1.4 with point formats from 6 on; see las14.h for what becomes of others. Fails
-/// where no point is selected. Every error names the file and the fault. A source whose name ends in .surf is a model;
-/// its points come in the order of its file, in the system of the scan that it was built of.
+/// (.copc.laz), EPT and Potree 2 (files ept.json and metadata.json in a folder that is not there yet) hold the points
+/// in an octree, see point_octree.h, as records of LAS 1.4 with point formats from 6 on; see las14.h for what becomes
+/// of others. Fails where no point is selected. Every error names the file and the fault. A source whose name ends in
+/// .surf is a model; its points come in the order of its file, in the system of the scan that it was built of.
 Result<ExportReport> export_scan(const std::filesystem::path& source, const std::filesystem::path& target,
                                  const ExportOptions& options);
 

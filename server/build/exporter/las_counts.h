@@ -6,6 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "geometry/box.h"
+#include "scan/las_header.h"
+#include "surfel/grid.h"
+
 namespace surfcast::exporter {
 
 /// What a LAS file says before its points (LAS 1.4, tables 3 and 6).
@@ -38,6 +42,12 @@ void add_laszip_record(LasHead& head);
 
 /// The header's figures.
 void fill_in_header(LasHead& head, const LasCounts& counts, size_t data_offset);
+
+/// What readers of a file with this head know of its points, but for their number and bounds.
+scan::LasHeader header_of(LasHead head);
+
+/// The bounds of the points, world units.
+geometry::Box bounds_of(const surfel::Grid& grid, const LasCounts& counts);
 
 /// The header and the records before the points, and for LAZ the place of the chunk table, not known: -1.
 std::vector<std::byte> bytes_before_points(const LasHead& head);

@@ -64,13 +64,12 @@ class OctreeFileWriter : public RecordWriter {
 Result<std::unique_ptr<RecordWriter>> create_octree_file(const std::filesystem::path& target, LasHead head,
                                                          OctreeForm form, const OctreeOptions& options) {
   const uint64_t batch = options.memory / 8;
-  const bool ept = form == OctreeForm::kEpt;
-  Result<std::unique_ptr<NodeBatch>> nodes = ept ? create_ept(target, head, batch, options.page_entries)
-                                                 : create_copc(target, head, batch, options.page_entries);
+  const auto create = form == OctreeForm::kCopc ? create_copc : form == OctreeForm::kEpt ? create_ept : create_potree;
+  Result<std::unique_ptr<NodeBatch>> nodes = create(target, head, batch, options.page_entries);
   if (!nodes) return fail(nodes);
   // Temporary files of a folder lie beside it.
-  return std::make_unique<OctreeFileWriter>(ept ? target.parent_path() : target, std::move(head), std::move(*nodes),
-                                            options);
+  return std::make_unique<OctreeFileWriter>(form == OctreeForm::kCopc ? target : target.parent_path(), std::move(head),
+                                            std::move(*nodes), options);
 }
 
 }  // namespace surfcast::exporter

@@ -10,8 +10,9 @@ namespace surfcast::exporter {
 
 /// The forms in which an octree of points is written.
 enum class OctreeForm {
-  kCopc,  ///< a file
-  kEpt,   ///< a folder; the target is the ept.json in it
+  kCopc,     ///< a file
+  kEpt,      ///< a folder; the target is the ept.json in it
+  kPotree2,  ///< a folder; the target is the metadata.json in it
 };
 
 /// Collects point records and writes them as an octree when all are there. The head is one of version 1.4 with a point

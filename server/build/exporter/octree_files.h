@@ -20,4 +20,9 @@ Result<std::unique_ptr<NodeBatch>> create_copc(const std::filesystem::path& targ
 Result<std::unique_ptr<NodeBatch>> create_ept(const std::filesystem::path& target, LasHead head, uint64_t most_bytes,
                                               size_t most_entries);
 
+/// The same in the form of Potree 2 (encoding DEFAULT), all points in one file. `target` is the metadata.json. All
+/// fields of the records are kept, fields of fewer than 8 bits as bytes, scaled extra bytes as doubles.
+Result<std::unique_ptr<NodeBatch>> create_potree(const std::filesystem::path& target, LasHead head, uint64_t most_bytes,
+                                                 size_t most_entries);
+
 }  // namespace surfcast::exporter

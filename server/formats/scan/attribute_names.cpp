@@ -9,7 +9,7 @@ namespace {
 
 using Alias = std::pair<std::string_view, std::string_view>;
 
-// Keys are in lower case, without underscores, spaces and a leading "scalar".
+// Keys are in lower case, without underscores, hyphens, spaces and a leading "scalar".
 constexpr std::array kAliases = {
     Alias{"x", "x"},
     Alias{"y", "y"},
@@ -39,6 +39,10 @@ constexpr std::array kAliases = {
     Alias{"i", "intensity"},
     Alias{"classification", "classification"},
     Alias{"class", "classification"},
+    Alias{"classificationflags", "classification_flags"},
+    Alias{"classflags", "classification_flags"},
+    Alias{"scannerchannel", "scanner_channel"},
+    Alias{"scanchannel", "scanner_channel"},
     Alias{"returnnumber", "return_number"},
     Alias{"numberofreturns", "number_of_returns"},
     Alias{"pointsourceid", "point_source_id"},
@@ -57,7 +61,7 @@ constexpr std::array kAliases = {
 std::string attribute_key(std::string_view name) {
   std::string key;
   for (const char c : name) {
-    if (c != '_' && c != ' ') key += to_lower(c);
+    if (c != '_' && c != '-' && c != ' ') key += to_lower(c);
   }
   constexpr std::string_view kPrefix = "scalar";
   if (key.size() > kPrefix.size() && key.starts_with(kPrefix)) key.erase(0, kPrefix.size());

@@ -8,7 +8,7 @@
 
 namespace surfcast::scan {
 
-/// A name without case, underscores and spaces, and without a leading "scalar".
+/// A name without case, underscores, hyphens and spaces, and without a leading "scalar".
 std::string attribute_key(std::string_view name);
 
 /// The canonical name of an attribute: a well-known name if `name` is a spelling of it ("ReturnNumber",
