@@ -121,6 +121,12 @@ glm::dvec3 LocalFrame::to_local(const glm::dvec3& world) const {
   return local;
 }
 
+std::vector<uint32_t> Sites::points() const {
+  std::vector<uint32_t> points(size());
+  for (uint32_t i = 0; i < of_point.size(); ++i) points[of_point[i]] = i;
+  return points;
+}
+
 Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& box) {
   const LocalFrame frame(box);
   const std::vector<Entry> entries = ordered_points(world, frame);

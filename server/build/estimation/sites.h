@@ -32,6 +32,8 @@ struct Sites {
   double unit = 1;                    ///< world units per local unit: a power of two
 
   [[nodiscard]] size_t size() const { return positions.size(); }
+  /// For each site a point that is there, the last one.
+  [[nodiscard]] std::vector<uint32_t> points() const;
 };
 
 /// `frame` must contain all positions.

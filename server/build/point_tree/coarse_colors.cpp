@@ -17,13 +17,6 @@ constexpr double kWidth = 0.7;
 /// Neighbours that count: further ones are two spacings away, where weights are small.
 constexpr size_t kNeighbours = 12;
 
-/// The surfel that a site stands for: the last one there. Others at the same position differ in an attribute.
-std::vector<uint32_t> surfels_of(const estimation::Sites& sites) {
-  std::vector<uint32_t> surfels(sites.size());
-  for (uint32_t i = 0; i < sites.of_point.size(); ++i) surfels[sites.of_point[i]] = i;
-  return surfels;
-}
-
 /// How much the colour of `other` counts for `own` beside the distance: on a surface only that of the same sheet.
 double likeness(const surfel::SurfelCloud& cloud, uint32_t own, uint32_t other) {
   if (cloud.is_scatter(own)) return 1;
@@ -36,7 +29,7 @@ double likeness(const surfel::SurfelCloud& cloud, uint32_t own, uint32_t other) 
 std::vector<glm::u16vec3> coarse_colors(const surfel::SurfelCloud& cloud) {
   const surfel::ColorAttribute& colors = *cloud.colors;
   const estimation::Sites sites = estimation::find_sites(cloud.positions, cloud.bounds());
-  const std::vector<uint32_t> surfels = surfels_of(sites);
+  const std::vector<uint32_t> surfels = sites.points();
   std::vector<glm::vec3> light;
   light.reserve(sites.size());
   for (const uint32_t surfel : surfels) light.push_back(surfel::to_linear(colors.values[surfel], colors.bits));

@@ -11,6 +11,7 @@
 #include "geometry/zone.h"
 #include "ldc/lattice.h"
 #include "point_tree/coarse_colors.h"
+#include "point_tree/coarse_planes.h"
 #include "point_tree/columns.h"
 #include "surfel/even_sampling.h"
 #include "surfel/normalization_weights.h"
@@ -105,20 +106,25 @@ void estimate_surfels(const Cells& cells, const ldc::OctreeKey& key, const scan:
   cloud.oriented = schema.normals;
 }
 
-/// Leaves the first surfels.
-void cut(surfel::SurfelCloud& cloud, size_t count) {
+/// Weighs the surfels, and leaves the first of them.
+void weigh_and_cut(surfel::SurfelCloud& cloud, size_t count) {
+  cloud.weights = surfel::normalization_weights(cloud);
   std::vector<bool> keep(cloud.size(), false);
   std::fill_n(keep.begin(), count, true);
   estimation::keep_surfels(cloud, keep);
 }
 
-/// The surfels as they stand for finer ones.
-std::shared_ptr<const surfel::SurfelCloud> coarse_cloud(const std::shared_ptr<const surfel::SurfelCloud>& cloud,
-                                                        std::vector<glm::u16vec3> colors) {
-  if (colors.empty()) return cloud;
-  auto coarse = std::make_shared<surfel::SurfelCloud>(*cloud);
-  coarse->colors->values = std::move(colors);
+/// The surfels of a level that is a sample as they stand for finer ones.
+surfel::SurfelCloud coarse_surfels(const surfel::SurfelCloud& cloud) {
+  surfel::SurfelCloud coarse = cloud;
+  adopt_planes(coarse);
+  if (coarse.colors) coarse.colors->values = coarse_colors(coarse);
   return coarse;
+}
+
+std::shared_ptr<const surfel::SurfelCloud> with_radii_up_to(float largest, surfel::SurfelCloud cloud) {
+  for (float& radius : cloud.radii) radius = std::min(radius, largest);
+  return std::make_shared<const surfel::SurfelCloud>(std::move(cloud));
 }
 
 /// The surfels that a plan takes, before they are thinned or divided.
@@ -189,21 +195,18 @@ CellSurfels surfels_of_node(const NodeTree& tree, uint32_t node, const PointPath
     append_points(step->points, rows_around(*step, range, around), cell.cloud);
   }
   estimate_surfels(cells, key, schema, cell.cloud);
-  cell.cloud.weights = surfel::normalization_weights(cell.cloud);
-  if (cell.cloud.colors && !tree.nodes[node].leaf()) {
-    cell.coarse_colors = coarse_colors(cell.cloud);
-    cell.coarse_colors.resize(count);
-  }
-  cut(cell.cloud, count);
+  if (!tree.nodes[node].leaf()) cell.coarse = coarse_surfels(cell.cloud);
+  weigh_and_cut(cell.cloud, count);
+  if (cell.coarse) weigh_and_cut(*cell.coarse, count);
   return cell;
 }
 
 Result<std::vector<MadeBlock>> divide_surfels(const NodeTree& tree, const BlockTable& table, uint32_t node,
                                               CellSurfels surfels, double radius) {
   const auto largest = static_cast<float>(largest_radius(tree, node, radius));
-  for (float& own : surfels.cloud.radii) own = std::min(own, largest);
-  const auto cloud = std::make_shared<const surfel::SurfelCloud>(std::move(surfels.cloud));
-  const auto coarse = coarse_cloud(cloud, std::move(surfels.coarse_colors));
+  const std::shared_ptr<const surfel::SurfelCloud> cloud = with_radii_up_to(largest, std::move(surfels.cloud));
+  const std::shared_ptr<const surfel::SurfelCloud> coarse =
+      surfels.coarse ? with_radii_up_to(largest, std::move(*surfels.coarse)) : cloud;
   std::vector<MadeBlock> blocks;
   for (const uint32_t number : table.of_node[node]) {
     const BlockPlan& plan = table.plans[number];

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,8 @@ using PointPath = std::vector<std::shared_ptr<const NodePoints>>;
 struct CellSurfels {
   surfel::SurfelCloud cloud;
   std::vector<uint64_t> codes;  ///< of its surfels, see Cells::code_of
-  /// Of its surfels in blocks that stand for finer ones; empty where there are no such blocks, or no colours.
-  std::vector<glm::u16vec3> coarse_colors;
+  /// The same surfels as they stand for finer ones; none of a node that has no child.
+  std::optional<surfel::SurfelCloud> coarse;
 };
 
 /// The surfels of the cell of a node: its points and those of its ancestors there. The points of the ancestors around
