@@ -8,13 +8,16 @@
 
 #include <unistd.h>
 
+#include "base/file_source.h"
 #include "bench_support.h"
 #include "builder/build_model.h"
+#include "exporter/export_scan.h"
 #include "lab/colored_points.h"
 #include "lab/kernel_defines.h"
 #include "lab/leave_out_report.h"
 #include "lab/renderer_thread.h"
 #include "lab/report.h"
+#include "point_tree/open_in_place.h"
 #include "shared/kernel.h"
 
 namespace surfcast::lab {
@@ -26,6 +29,7 @@ struct Options {
   std::vector<std::string> scans;  ///< PLACE:PATH
   std::vector<double> sigmas{SURFCAST_KERNEL_SIGMA};
   fs::path builder;
+  bool in_place = false;
   fs::path model;
   fs::path keep;
   fs::path pictures;
@@ -69,6 +73,27 @@ void build(const fs::path& scan, const fs::path& target, bool z_up, const fs::pa
   if (std::system(command.c_str()) != 0) stop(command + " failed");
 }
 
+using ModelPointer = std::shared_ptr<const model::ModelFile>;
+
+/// The points as COPC, shown in place.
+ModelPointer open_in_place(const fs::path& scan, const fs::path& tree) {
+  bench::value_or_exit(exporter::export_scan(scan, tree, {}));
+  auto file = std::make_unique<const FileSource>(bench::value_or_exit(PositionedFile::open(tree)), tree);
+  return std::make_shared<const model::ModelFile>(bench::value_or_exit(
+      point_tree::open_in_place(point_tree::TreeFormat::kCopc, std::move(file), nullptr, {}, nullptr)));
+}
+
+/// The model of the kept points of a scan. `path`: of its files, without extension.
+ModelPointer model_of(const LabPoints& kept, const fs::path& path, const Options& options) {
+  if (!options.model.empty()) return bench::open_or_exit(options.model);
+  const fs::path scan = path.string() + ".ply";
+  if (!write_ply(kept, scan)) stop(scan.string() + " cannot be written");
+  if (options.in_place) return open_in_place(scan, path.string() + ".copc.laz");
+  const fs::path target = path.string() + ".surf";
+  build(scan, target, kept.z_up, options.builder);
+  return bench::open_or_exit(target);
+}
+
 /// The renderers of all kernels, and the model that they draw.
 class Pictures {
  public:
@@ -79,7 +104,7 @@ class Pictures {
     }
   }
 
-  void open(std::shared_ptr<const model::ModelFile> model) {
+  void open(ModelPointer model) {
     for (const auto& thread : threads_) {
       thread->run([&](render::Renderer& renderer) {
         if (model_) renderer.release_model(*model_);
@@ -101,7 +126,7 @@ class Pictures {
 
  private:
   std::vector<std::unique_ptr<RendererThread>> threads_;
-  std::shared_ptr<const model::ModelFile> model_;
+  ModelPointer model_;
 };
 
 LeaveOutResult study(const PlacedScan& scan, const Options& options, const fs::path& folder, Pictures& pictures) {
@@ -112,14 +137,9 @@ LeaveOutResult study(const PlacedScan& scan, const Options& options, const fs::p
   if (points.colors.empty() && !options.pictures.empty()) points.colors = colors_for(points);
   const std::string name = scan.path.stem().string();
   const auto make_model = [&](const LabPoints& kept) {
-    const fs::path kept_scan = folder / (name + ".kept.ply");
-    const fs::path target = options.model.empty() ? folder / (name + ".kept.surf") : options.model;
-    if (options.model.empty()) {
-      if (!write_ply(kept, kept_scan)) stop(kept_scan.string() + " cannot be written");
-      build(kept_scan, target, points.z_up, options.builder);
-    }
-    pictures.open(bench::open_or_exit(target));
-    return bench::open_or_exit(target);
+    ModelPointer model = model_of(kept, folder / (name + ".kept"), options);
+    pictures.open(model);
+    return model;
   };
   return study_points(name, points, *scan.place, make_model,
                       [&](const NamedCamera& camera, const picture::PictureRequest& request) {
@@ -189,9 +209,13 @@ int main_of(int argc, char** argv) {
   auto* builder =
       app.add_option("--builder", options.builder, "a surfcastd that builds the models in place of this build")
           ->check(CLI::ExistingFile);
-  app.add_option("--model", options.model, "the model of the kept points of a single scan, instead of building one")
-      ->check(CLI::ExistingFile)
-      ->excludes(builder);
+  auto* model =
+      app.add_option("--model", options.model, "the model of the kept points of a single scan, instead of building one")
+          ->check(CLI::ExistingFile)
+          ->excludes(builder);
+  app.add_flag("--in-place", options.in_place, "show the kept points in place, as COPC, instead of building a model")
+      ->excludes(builder)
+      ->excludes(model);
   app.add_option("--keep", options.keep, "folder in which the kept points and the models stay");
   app.add_option("--pictures", options.pictures,
                  "folder for what the cameras see, as PPM; scans without colours get some for it")

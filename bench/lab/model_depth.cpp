@@ -62,7 +62,7 @@ Result<DrawnSurfels> drawn_surfels(const model::ModelFile& model) {
     if (model.tree().children(block).count > 0) continue;
     const Result<model::DecodedBlock> decoded = model.decode(block, model::WantedScalars::kNone);
     if (!decoded) return fail(decoded);
-    append(*decoded, surfels);
+    if (decoded->size() > 0) append(*decoded, surfels);
   }
   return surfels;
 }
