@@ -177,17 +177,21 @@ class ThinLinkTest : public ViewSessionTest {
 TEST_F(ThinLinkTest, FramesInMotionArePacketsForWhoDecodesThem) {
   const std::vector<wire::ViewFrame> frames = move(/*video=*/true, 30);
   uint64_t last = 0;
-  size_t packets = 0;
+  size_t packets = 0, keys = 0;
   for (const wire::ViewFrame& frame : frames) {
     if (!frame.has_video()) continue;
     EXPECT_EQ(frame.video().codec(), wire::VIDEO_CODEC_VP9);
-    EXPECT_EQ(frame.video().key(), last == 0);
-    EXPECT_EQ(frame.video().refers_to(), last);
+    // A busy machine may drop a packet that a newer update has outdated. The next one is a key frame then.
+    const bool key = frame.video().key();
+    EXPECT_EQ(frame.video().refers_to(), key ? 0 : last);
+    EXPECT_TRUE(key || last != 0) << "the first packet refers to another";
     EXPECT_TRUE(frame.moving());
     last = frame.frame();
     ++packets;
+    if (key) ++keys;
   }
   EXPECT_GT(packets, 10U);
+  EXPECT_LT(keys, packets / 2);
 }
 
 TEST_F(ThinLinkTest, FramesAreFilesForWhoDidNotAskForVideo) {
