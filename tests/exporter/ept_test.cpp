@@ -23,12 +23,6 @@ using ::testing::HasSubstr;
 using Json = nlohmann::json;
 using testing::LasFile;
 
-ExportOptions few_points_a_node() {
-  ExportOptions options;
-  options.encoding.chunk_size = 200;
-  return options;
-}
-
 Json json_of(const fs::path& path) {
   std::ifstream in(path);
   return Json::parse(in, nullptr, false);
@@ -113,13 +107,7 @@ TEST_F(EptTest, EveryRecordIsInTheTileOfItsNode) {
 }
 
 TEST_F(EptTest, TheDescriptionStatesPointsBoundsAndDimensions) {
-  LasFile file = hills(8);
-  testing::Bytes extra(std::string(192, '\0'));
-  extra.set<uint8_t>(2, 3);  // 16 bits, unsigned
-  std::string entry = extra.text();
-  entry.replace(4, 7, "quality");
-  file.variable_records += named_record("LASF_Spec", 4, entry);
-  file.variable_record_count += 1;
+  const LasFile file = hills_with_quality(8);
   ASSERT_TRUE(export_scan(write("scan.las", file.text()), place("out/ept.json"), few_points_a_node()));
   const Json ept = json_of(place("out/ept.json"));
   EXPECT_EQ(ept["version"], "1.0.0");

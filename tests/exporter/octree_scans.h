@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "exporter/export_scan.h"
 #include "scan/las_file.h"
 
 namespace surfcast::exporter {
@@ -43,6 +44,24 @@ inline testing::LasFile hills(int format, size_t count = 6000) {
     file.records.push_back(whole.text());
   }
   return file;
+}
+
+/// The same with extra bytes that have a name.
+inline testing::LasFile hills_with_quality(int format) {
+  testing::LasFile file = hills(format);
+  testing::Bytes extra(std::string(192, '\0'));
+  extra.set<uint8_t>(2, 3);  // 16 bits, unsigned
+  std::string entry = extra.text();
+  entry.replace(4, 7, "quality");
+  file.variable_records += named_record("LASF_Spec", 4, entry);
+  file.variable_record_count += 1;
+  return file;
+}
+
+inline ExportOptions few_points_a_node() {
+  ExportOptions options;
+  options.encoding.chunk_size = 200;
+  return options;
 }
 
 }  // namespace surfcast::exporter

@@ -105,12 +105,6 @@ class PotreeTest : public ::testing::Test {
   Result<ScratchFolder> folder_ = ScratchFolder::create(fs::temp_directory_path(), "potree-test-");
 };
 
-ExportOptions few_points_a_node() {
-  ExportOptions options;
-  options.encoding.chunk_size = 200;
-  return options;
-}
-
 TEST_F(PotreeTest, EveryPointIsInTheCubeOfItsNodeOnce) {
   const LasFile file = hills(7);
   const auto report = export_scan(write("scan.las", file.text()), place("out/metadata.json"), few_points_a_node());
@@ -153,13 +147,7 @@ TEST_F(PotreeTest, EveryPointIsInTheCubeOfItsNodeOnce) {
 }
 
 TEST_F(PotreeTest, TheDescriptionStatesPointsBoundsAndAttributes) {
-  LasFile file = hills(8);
-  testing::Bytes extra(std::string(192, '\0'));
-  extra.set<uint8_t>(2, 3);  // 16 bits, unsigned
-  std::string entry = extra.text();
-  entry.replace(4, 7, "quality");
-  file.variable_records += named_record("LASF_Spec", 4, entry);
-  file.variable_record_count += 1;
+  const LasFile file = hills_with_quality(8);
   ASSERT_TRUE(export_scan(write("scan.las", file.text()), place("out/metadata.json"), few_points_a_node()));
   LoadedNodes nodes;
   size_t pages = 0;

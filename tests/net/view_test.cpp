@@ -1,6 +1,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "net/net_fixture.h"
@@ -176,15 +177,17 @@ class ThinLinkTest : public ViewSessionTest {
 
 TEST_F(ThinLinkTest, FramesInMotionArePacketsForWhoDecodesThem) {
   const std::vector<wire::ViewFrame> frames = move(/*video=*/true, 30);
-  uint64_t last = 0;
+  uint64_t last = 0, before = 0;  // the packet and the frame before
   size_t packets = 0, keys = 0;
   for (const wire::ViewFrame& frame : frames) {
+    const bool next = frame.frame() == std::exchange(before, frame.frame()) + 1;
     if (!frame.has_video()) continue;
     EXPECT_EQ(frame.video().codec(), wire::VIDEO_CODEC_VP9);
     // A busy machine may drop a packet that a newer update has outdated. The next one is a key frame then.
     const bool key = frame.video().key();
     EXPECT_EQ(frame.video().refers_to(), key ? 0 : last);
     EXPECT_TRUE(key || last != 0) << "the first packet refers to another";
+    EXPECT_FALSE(key && last != 0 && next) << "no packet is missing";
     EXPECT_TRUE(frame.moving());
     last = frame.frame();
     ++packets;

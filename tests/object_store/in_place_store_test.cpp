@@ -122,8 +122,9 @@ TEST_F(InPlaceStoreTest, InspectPickAndExportTakeUrls) {
 }
 
 TEST_F(InPlaceStoreTest, WhatPassesChangesNoPixel) {
-  for (const std::string& url : {server_.url(kCopc), put_ept()}) {
-    const std::string expected = drawn(url);
+  for (const auto& [url, scan] :
+       std::map<std::string, std::string>{{server_.url(kCopc), file("hills.copc.laz")}, {put_ept(), file("hills")}}) {
+    const std::string expected = drawn(scan);
     for (const Fault fault : {Fault::kBusy, Fault::kCut, Fault::kHanging, Fault::kStalling}) {
       server_.fail(fault, 2, /*after=*/2);
       EXPECT_TRUE(drawn(url) == expected) << url << ' ' << static_cast<int>(fault);

@@ -20,9 +20,6 @@ namespace fs = std::filesystem;
 using Bytes = std::vector<std::byte>;
 using scan::Json;
 
-constexpr size_t kExtendedPlace = 235;
-constexpr size_t kExtendedNumber = 243;
-
 std::string name_of(const ldc::OctreeKey& key) {
   std::string name = std::to_string(key.depth);
   for (const uint32_t place : {key.x, key.y, key.z}) name += '-' + std::to_string(place);
@@ -100,10 +97,8 @@ class EptFolder : public NodeBatch {
   EptFolder(NewFolder folder, LasHead head, uint64_t most_bytes, size_t most_entries)
       : NodeBatch(most_bytes), folder_(std::move(folder)), head_(std::move(head)), most_entries_(most_entries) {
     head_.compressed = true;
-    head_.extended.clear();
+    drop_extended_records(head_);
     std::erase_if(head_.records, [](const Bytes& record) { return !is_of_every_tile(record); });
-    put(head_.header, kExtendedPlace, uint64_t{0});
-    put(head_.header, kExtendedNumber, uint32_t{0});
   }
 
   Result<uint64_t> finish(const OctreeFacts& facts) override {

@@ -1,8 +1,6 @@
 #include "exporter/las_counts.h"
 
 #include <algorithm>
-#include <cstring>
-#include <string_view>
 
 #include "base/contract.h"
 #include "exporter/las_bytes.h"
@@ -31,17 +29,9 @@ constexpr size_t kCount = 247;
 constexpr size_t kReturns = 255;
 constexpr uint8_t kCompressedBit = 0x80;
 
-constexpr std::string_view kLaszipUser = "laszip encoded";
-constexpr uint16_t kLaszipRecord = 22204;
-
 /// Return number of a record; 0 counts as none.
 size_t return_of(const std::byte* record, int point_format) {
   return std::to_integer<size_t>(record[14]) & (point_format < 6 ? 7U : 15U);
-}
-
-bool is_laszip_record(const std::vector<std::byte>& record) {
-  return load<uint16_t>(&record[18]) == kLaszipRecord &&
-         std::memcmp(&record[2], kLaszipUser.data(), kLaszipUser.size()) == 0;
 }
 
 }  // namespace
@@ -66,7 +56,7 @@ void LasCounts::add(std::span<const std::byte> records, const LasHead& head) {
 
 void add_laszip_record(LasHead& head) {
   if (!head.compressed) return;
-  head.records.push_back(las_record(kLaszipUser, kLaszipRecord, laz::encode_laszip_record(coding_of(head))));
+  head.records.push_back(las_record("laszip encoded", 22204, laz::encode_laszip_record(coding_of(head))));
 }
 
 /// Point formats from 6 on have no counts of 32 bits, and versions before 1.4 no others.
@@ -92,14 +82,17 @@ void fill_in_header(LasHead& head, const LasCounts& counts, size_t data_offset) 
   for (size_t i = 0; i < counts.returns.size(); ++i) put(header, kReturns + 8 * i, counts.returns[i]);
 }
 
+void drop_extended_records(LasHead& head) {
+  head.extended.clear();
+  if (!head.has_wide_counts()) return;
+  put(head.header, kExtendedPlace, uint64_t{0});
+  put(head.header, kExtendedNumber, uint32_t{0});
+}
+
 scan::LasHeader header_of(LasHead head) {
   head.compressed = true;
-  std::erase_if(head.records, is_laszip_record);
   add_laszip_record(head);
-  if (head.has_wide_counts()) {
-    put(head.header, kExtendedPlace, uint64_t{0});
-    put(head.header, kExtendedNumber, uint32_t{0});
-  }
+  drop_extended_records(head);
   const LasCounts any{.points = 1, .returns = {}, .low = {}, .high = {}};
   fill_in_header(head, any, bytes_before_points(head).size() - sizeof(int64_t));
   const Result<scan::LasHeader> header = scan::parse_las_header(bytes_before_points(head));

@@ -43,6 +43,9 @@ void add_laszip_record(LasHead& head);
 /// The header's figures.
 void fill_in_header(LasHead& head, const LasCounts& counts, size_t data_offset);
 
+/// Leaves out the records behind the points.
+void drop_extended_records(LasHead& head);
+
 /// What readers of a file with this head know of its points, but for their number and bounds.
 scan::LasHeader header_of(LasHead head);
 
