@@ -29,5 +29,6 @@ done
 plan=$(submit '' "$surfcastd build-plan $quoted --work '$work' --parts $parts")
 part=$(submit "$plan" "$surfcastd build-part \$SLURM_ARRAY_TASK_ID --work '$work'" --array="1-$parts")
 signs=$(submit "$part" "$surfcastd build-signs --work '$work'")
-blocks=$(submit "$signs" "$surfcastd build-blocks \$SLURM_ARRAY_TASK_ID --work '$work'" --array="1-$parts")
+blocks=$(submit "$signs" "$surfcastd build-blocks \$SLURM_ARRAY_TASK_ID --work '$work' &&
+rm -f '$work'/part-\$SLURM_ARRAY_TASK_ID" --array="1-$parts")
 submit "$blocks" "$surfcastd build-merge --work '$work' --output '$model'"

@@ -207,6 +207,30 @@ TEST_F(BuildStepsTest, AStepThatWasDoneIsNotRepeated) {
   for (const auto& [path, time] : times) EXPECT_EQ(fs::last_write_time(path), time) << path;
 }
 
+TEST_F(BuildStepsTest, APartIsNotNeededAnyMoreOnceItsBlocksAreThere) {
+  make_all(4);
+  const std::string model = bytes_in(model_);
+  for (const size_t part : {1, 2, 3, 4}) fs::remove(work_ / ("part-" + std::to_string(part)));
+  fs::remove(work_ / "blocks-2");
+  EXPECT_TRUE(build_part(place_, 1, kSilent)->done_before);
+  EXPECT_FALSE(build_part(place_, 2, kSilent)->done_before);
+  EXPECT_FALSE(fs::exists(work_ / "part-1"));
+  make_blocks(4);
+  fs::remove(model_);
+  ASSERT_TRUE(merge_parts(place_, model_, kSilent));
+  EXPECT_TRUE(bytes_in(model_) == model);
+}
+
+TEST_F(BuildStepsTest, WithoutSignsAllPartsAreNeededAgain) {
+  make_all(4);
+  const std::string model = bytes_in(model_);
+  for (const size_t part : {1, 2, 3, 4}) fs::remove(work_ / ("part-" + std::to_string(part)));
+  fs::remove(work_ / "signs");
+  fs::remove(model_);
+  make_planned(4);
+  EXPECT_TRUE(bytes_in(model_) == model);
+}
+
 TEST_F(BuildStepsTest, ADamagedResultIsMadeAgain) {
   make_all(4);
   const std::string model = bytes_in(model_);

@@ -2,7 +2,7 @@
 
 #include <fstream>
 #include <iterator>
-#include <numeric>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,6 +20,14 @@ const std::string kDigest(32, 'a');
 std::vector<std::byte> counting_bytes(size_t size) {
   std::vector<std::byte> bytes(size);
   for (size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::byte>(i * 31 % 251);
+  return bytes;
+}
+
+/// Bytes that cannot be compressed.
+std::vector<std::byte> random_bytes(size_t size) {
+  std::mt19937 random(7);
+  std::vector<std::byte> bytes(size);
+  for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
   return bytes;
 }
 
@@ -51,9 +59,13 @@ class WorkFileTest : public ::testing::Test {
 };
 
 TEST_F(WorkFileTest, SectionsOfAnySizeComeBack) {
-  // Empty, small, exactly one checked piece, and several.
-  const std::vector<std::vector<std::byte>> sections{
-      {}, counting_bytes(5), counting_bytes(1 << 20), counting_bytes((5 << 19) + 7)};
+  // Empty, small, exactly one piece, and several; that can be compressed, and that cannot.
+  const std::vector<std::vector<std::byte>> sections{{},
+                                                     counting_bytes(5),
+                                                     counting_bytes(1 << 20),
+                                                     random_bytes(1 << 20),
+                                                     counting_bytes((5 << 19) + 7),
+                                                     random_bytes((5 << 19) + 7)};
   write(sections);
   const Result<WorkFile> file = WorkFile::open(path_, owner_);
   ASSERT_TRUE(file) << file.error().message;
@@ -66,8 +78,15 @@ TEST_F(WorkFileTest, SectionsOfAnySizeComeBack) {
   EXPECT_TRUE(file->check());
 }
 
+TEST_F(WorkFileTest, SectionsAreCompressedWhereThatMakesThemSmaller) {
+  write({counting_bytes(3 << 20)});
+  EXPECT_LT(fs::file_size(path_), 3 << 15);
+  write({random_bytes(3 << 20)});
+  EXPECT_LT(fs::file_size(path_), (3 << 20) + 200);
+}
+
 TEST_F(WorkFileTest, EveryChangedByteIsNoticed) {
-  write({counting_bytes(40), counting_bytes(3)});
+  write({counting_bytes(1000), random_bytes(40), counting_bytes(3)});
   const std::string whole = content_of(path_);
   ASSERT_TRUE(is_whole());
   for (size_t i = 0; i < whole.size(); ++i) {
@@ -79,7 +98,7 @@ TEST_F(WorkFileTest, EveryChangedByteIsNoticed) {
 }
 
 TEST_F(WorkFileTest, EveryLengthButItsOwnIsNoticed) {
-  write({counting_bytes(40), counting_bytes(3)});
+  write({counting_bytes(1000), random_bytes(40), counting_bytes(3)});
   const std::string whole = content_of(path_);
   for (size_t size = 0; size < whole.size(); ++size) {
     put_content(path_, whole.substr(0, size));
@@ -90,7 +109,7 @@ TEST_F(WorkFileTest, EveryLengthButItsOwnIsNoticed) {
 }
 
 TEST_F(WorkFileTest, DamageOfASectionIsAnErrorOfThatSection) {
-  write({counting_bytes(3 << 20), counting_bytes(9)});
+  write({random_bytes(3 << 20), counting_bytes(9)});
   std::string changed = content_of(path_);
   changed[(2 << 20) + 5] ^= 1;
   put_content(path_, changed);

@@ -67,6 +67,13 @@ class BuildStepProgramsTest : public ::testing::Test {
     EXPECT_EQ(run(step(words)), 0) << words[0] << " after " << moment;
   }
 
+  /// Whether files of parts are left, which are deleted once their blocks are there.
+  [[nodiscard]] bool has_parts() const {
+    const fs::directory_iterator files(work());
+    return std::any_of(begin(files), end(files),
+                       [](const auto& file) { return file.path().filename().string().starts_with("part-"); });
+  }
+
   fs::path folder_;
   fs::path scan_;
 };
@@ -119,9 +126,17 @@ TEST_F(BuildStepProgramsTest, MakeRunsTheSteps) {
                    "MODEL=" + model()};
   ASSERT_EQ(run(make), 0);
   EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
+  EXPECT_FALSE(has_parts());
   const fs::file_time_type before = fs::last_write_time(model());
   ASSERT_EQ(run(make), 0);
   EXPECT_EQ(fs::last_write_time(model()), before) << "all is done";
+  // Of a run that was stopped before the last blocks, only what is missing is made.
+  const fs::file_time_type blocks = fs::last_write_time(work() + "/blocks-1");
+  fs::remove(work() + "/blocks-3");
+  fs::remove(model());
+  ASSERT_EQ(run(make), 0);
+  EXPECT_EQ(fs::last_write_time(work() + "/blocks-1"), blocks);
+  EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
 }
 
 TEST_F(BuildStepProgramsTest, SnakemakeRunsTheSteps) {
@@ -132,6 +147,7 @@ TEST_F(BuildStepProgramsTest, SnakemakeRunsTheSteps) {
                            scan_.string() + " parts=4 work=" + work() + " model=" + model();
   ASSERT_EQ(run({"/bin/sh", "-c", line}), 0);
   EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
+  EXPECT_FALSE(has_parts());
 }
 
 TEST_F(BuildStepProgramsTest, TheScriptOfSlurmSubmitsTheSteps) {
@@ -163,6 +179,7 @@ TEST_F(BuildStepProgramsTest, TheScriptOfSlurmSubmitsTheSteps) {
   ASSERT_EQ(run(line), 0);
   EXPECT_EQ(bytes_in(folder_ / "jobs"), "5\n");
   EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
+  EXPECT_FALSE(has_parts());
 }
 
 }  // namespace

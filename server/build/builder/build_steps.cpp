@@ -390,6 +390,12 @@ Status note_merged(const WorkFolder& folder, const fs::path& target) {
                       [&target](WorkFileWriter& file) { return file.add(bytes_of_text(trace_of(target))); });
 }
 
+/// A part is not needed any more once its blocks are there, and those signs that they were made with.
+bool is_part_done(const WorkFolder& folder, size_t part) {
+  return folder.is_done(WorkStep::kPart, part) ||
+         (folder.is_done(WorkStep::kSigns) && folder.is_done(WorkStep::kBlocks, part));
+}
+
 }  // namespace
 
 Result<PlanOutcome> plan_build(std::span<const fs::path> inputs, const fs::path& folder, const PlanRequest& request,
@@ -412,7 +418,7 @@ Result<PartOutcome> build_part(const WorkPlace& work, size_t part, const BuildPr
   if (!folder) return fail(folder);
   const Result<size_t> index = folder->index_of(part);
   if (!index) return fail(index);
-  if (folder->is_done(WorkStep::kPart, *index)) return PartOutcome{true, 0, 0};
+  if (is_part_done(*folder, *index)) return PartOutcome{true, 0, 0};
   const BuildPlan& plan = folder->plan();
   const std::vector<bool> needed = plan.inputs_of(*index);
   if (Status status = check_unchanged(plan, needed, work.folder); !status) return fail(status);

@@ -22,9 +22,9 @@ namespace surfcast::builder {
 //   merge_parts        once all blocks are there: the model
 //
 // Parts are numbered from 1 on, as in the names of the files. A file appears only when it is complete, and is checked
-// when it is read. A step whose result is there does nothing; one that was stopped is run again. The model has the
-// bytes that build_model gives with the same division. All errors name a file; an error about what an earlier step has
-// not made names that step.
+// when it is read. A step whose result is there does nothing; one that was stopped is run again. WORK/part-K may be
+// deleted once WORK/blocks-K is there. The model has the bytes that build_model gives with the same division. All
+// errors name a file; an error about what an earlier step has not made names that step.
 
 /// Where a step works.
 struct WorkPlace {

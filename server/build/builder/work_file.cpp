@@ -5,15 +5,21 @@
 #include <cstring>
 #include <utility>
 
+#include <zstd.h>
+
 #include "base/contract.h"
 #include "base/hash.h"
 
 namespace surfcast::builder {
 namespace {
 
-constexpr uint64_t kWorkFileVersion = 1;
-/// Bytes with one checksum: enough for the speed of the disk, few enough to be checked with little memory.
-constexpr uint64_t kCheckedBytes = uint64_t{1} << 20;
+constexpr uint64_t kWorkFileVersion = 2;
+/// Bytes that are packed together, with one checksum: enough for the speed of the disk, few enough to be checked with
+/// little memory.
+constexpr uint64_t kPieceBytes = uint64_t{1} << 20;
+/// Of zstd. Surfels take 69 bytes each without it, 36 at this level in 0.2 of the time that the disk saves, and 32 at
+/// level 3 in 1.5 times the time.
+constexpr int kLevel = 1;
 constexpr size_t kDigestDigits = 32;
 
 /// The last bytes of a work file. All members are at multiples of their size.
@@ -46,7 +52,20 @@ Trailer trailer_of(const WorkOwner& owner) {
 }
 
 uint64_t pieces_in(uint64_t bytes) {
-  return bytes / kCheckedBytes + (bytes % kCheckedBytes != 0 ? 1 : 0);
+  return bytes / kPieceBytes + (bytes % kPieceBytes != 0 ? 1 : 0);
+}
+
+/// Packs a piece into `buffer`. Returns the packed bytes, or the piece itself where packing saves nothing.
+std::span<const std::byte> pack(std::span<const std::byte> piece, std::vector<std::byte>& buffer) {
+  buffer.resize(ZSTD_compressBound(piece.size()));
+  const size_t packed = ZSTD_compress(buffer.data(), buffer.size(), piece.data(), piece.size(), kLevel);
+  if (ZSTD_isError(packed) != 0 || packed >= piece.size()) return piece;
+  return std::span(buffer).first(packed);
+}
+
+/// False unless `packed` is exactly such a piece.
+bool unpack(std::span<const std::byte> packed, std::span<std::byte> piece) {
+  return ZSTD_decompress(piece.data(), piece.size(), packed.data(), packed.size()) == piece.size();
 }
 
 }  // namespace
@@ -60,12 +79,16 @@ Result<WorkFileWriter> WorkFileWriter::create(const std::filesystem::path& targe
 Status WorkFileWriter::add(std::span<const std::byte> section) {
   ++sections_;
   table_.push_back(section.size());
-  for (std::span<const std::byte> rest = section; !rest.empty();) {
-    const std::span<const std::byte> piece = rest.first(std::min<size_t>(rest.size(), kCheckedBytes));
-    table_.push_back(hash_of(piece));
-    rest = rest.subspan(piece.size());
+  std::vector<std::byte> buffer;
+  while (!section.empty()) {
+    const std::span<const std::byte> piece = section.first(std::min<size_t>(section.size(), kPieceBytes));
+    const std::span<const std::byte> stored = pack(piece, buffer);
+    table_.push_back(stored.size());
+    table_.push_back(hash_of(stored));
+    if (Status status = file_.append(stored); !status) return status;
+    section = section.subspan(piece.size());
   }
-  return file_.append(section);
+  return {};
 }
 
 Status WorkFileWriter::finish() {
@@ -113,26 +136,41 @@ Status WorkFile::read_table(const WorkOwner& owner) {
 bool WorkFile::take_sections(std::span<const uint64_t> table, uint64_t end) {
   uint64_t offset = 0;
   while (!table.empty()) {
-    const uint64_t bytes = table[0];
-    if (bytes > end - offset || pieces_in(bytes) > table.size() - 1) return false;
-    const std::span<const uint64_t> checksums = table.subspan(1, pieces_in(bytes));
-    sections_.push_back({offset, bytes, {checksums.begin(), checksums.end()}});
-    offset += bytes;
-    table = table.subspan(1 + checksums.size());
+    Section section;
+    section.bytes = table[0];
+    table = table.subspan(1);
+    const uint64_t pieces = pieces_in(section.bytes);
+    if (pieces > table.size() / 2) return false;
+    for (uint64_t i = 0; i < pieces; ++i) {
+      const Piece piece{offset, table[2 * i], table[2 * i + 1]};
+      if (piece.stored > end - offset || piece.stored > kPieceBytes) return false;
+      section.pieces.push_back(piece);
+      offset += piece.stored;
+    }
+    table = table.subspan(2 * pieces);
+    sections_.push_back(std::move(section));
   }
   return offset == end;
 }
 
-Status WorkFile::read_piece(const Section& section, size_t piece, std::span<std::byte> bytes) const {
-  if (!file_.read(section.offset + piece * kCheckedBytes, bytes)) return fail(damaged());
-  return hash_of(bytes) == section.checksums[piece] ? Status() : fail(damaged());
+Status WorkFile::read_stored(const Piece& piece, std::span<std::byte> bytes) const {
+  if (!file_.read(piece.offset, bytes)) return fail(damaged());
+  return hash_of(bytes) == piece.checksum ? Status() : fail(damaged());
+}
+
+Status WorkFile::read_piece(const Piece& piece, std::span<std::byte> bytes, std::vector<std::byte>& buffer) const {
+  if (piece.stored == bytes.size()) return read_stored(piece, bytes);
+  buffer.resize(piece.stored);
+  if (Status status = read_stored(piece, buffer); !status) return status;
+  return unpack(buffer, bytes) ? Status() : fail(damaged());
 }
 
 Status WorkFile::read(size_t section, std::span<std::byte> bytes) const {
   if (section >= sections_.size() || bytes.size() != sections_[section].bytes) return fail(damaged());
-  for (size_t piece = 0; !bytes.empty(); ++piece) {
-    const std::span<std::byte> part = bytes.first(std::min<size_t>(bytes.size(), kCheckedBytes));
-    if (Status status = read_piece(sections_[section], piece, part); !status) return status;
+  std::vector<std::byte> buffer;
+  for (const Piece& piece : sections_[section].pieces) {
+    const std::span<std::byte> part = bytes.first(std::min<size_t>(bytes.size(), kPieceBytes));
+    if (Status status = read_piece(piece, part, buffer); !status) return status;
     bytes = bytes.subspan(part.size());
   }
   return {};
@@ -146,12 +184,10 @@ Result<std::vector<std::byte>> WorkFile::read(size_t section) const {
 }
 
 Status WorkFile::check() const {
-  std::vector<std::byte> buffer(kCheckedBytes);
+  std::vector<std::byte> buffer(kPieceBytes);
   for (const Section& section : sections_) {
-    for (size_t piece = 0; piece < section.checksums.size(); ++piece) {
-      const uint64_t rest = section.bytes - piece * kCheckedBytes;
-      const auto bytes = std::span(buffer).first(std::min(rest, kCheckedBytes));
-      if (Status status = read_piece(section, piece, bytes); !status) return status;
+    for (const Piece& piece : section.pieces) {
+      if (Status status = read_stored(piece, std::span(buffer).first(piece.stored)); !status) return status;
     }
   }
   return {};

@@ -24,8 +24,8 @@ struct WorkOwner {
   bool operator==(const WorkOwner&) const = default;
 };
 
-/// Writes a result of a build in parts: sections of bytes with checksums, and whose work it is. The file appears under
-/// its name only when it is complete.
+/// Writes a result of a build in parts: sections of bytes, compressed and with checksums, and whose work it is. The
+/// file appears under its name only when it is complete.
 class WorkFileWriter {
  public:
   static Result<WorkFileWriter> create(const std::filesystem::path& target, WorkOwner owner);
@@ -39,7 +39,7 @@ class WorkFileWriter {
 
   AtomicFile file_;
   WorkOwner owner_;
-  std::vector<uint64_t> table_;  ///< for each section, its bytes and the checksums of its pieces
+  std::vector<uint64_t> table_;  ///< for each section its bytes, and of each piece the stored bytes and their checksum
   uint64_t sections_ = 0;
 };
 
@@ -61,16 +61,21 @@ class WorkFile {
   [[nodiscard]] Error damaged() const;
 
  private:
+  struct Piece {
+    uint64_t offset = 0;  ///< in the file
+    uint64_t stored = 0;  ///< bytes in the file: those of the piece itself where they are as many
+    uint64_t checksum = 0;
+  };
   struct Section {
-    uint64_t offset = 0;
     uint64_t bytes = 0;
-    std::vector<uint64_t> checksums;
+    std::vector<Piece> pieces;
   };
 
   WorkFile(std::filesystem::path path, PositionedFile file) : path_(std::move(path)), file_(std::move(file)) {}
   Status read_table(const WorkOwner& owner);
   bool take_sections(std::span<const uint64_t> table, uint64_t end);
-  Status read_piece(const Section& section, size_t piece, std::span<std::byte> bytes) const;
+  Status read_stored(const Piece& piece, std::span<std::byte> bytes) const;
+  Status read_piece(const Piece& piece, std::span<std::byte> bytes, std::vector<std::byte>& buffer) const;
 
   std::filesystem::path path_;
   PositionedFile file_;
