@@ -17,8 +17,8 @@ constexpr uint64_t kWorkFileVersion = 2;
 /// Bytes that are packed together, with one checksum: enough for the speed of the disk, few enough to be checked with
 /// little memory.
 constexpr uint64_t kPieceBytes = uint64_t{1} << 20;
-/// Of zstd. Surfels take 69 bytes each without it, 36 at this level in 0.2 of the time that the disk saves, and 32 at
-/// level 3 in 1.5 times the time.
+/// Of zstd. Surfels take 69 bytes each without it, 36 at this level, for which a part takes 8 % more processor time,
+/// and 32 at level 3, for 11 % more.
 constexpr int kLevel = 1;
 constexpr size_t kDigestDigits = 32;
 
