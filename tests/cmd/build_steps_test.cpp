@@ -67,6 +67,20 @@ class BuildStepProgramsTest : public ::testing::Test {
     EXPECT_EQ(run(step(words)), 0) << words[0] << " after " << moment;
   }
 
+  [[nodiscard]] Words call_of_make(const std::string& program) const {
+    return {"/usr/bin/env",
+            "make",
+            "-s",
+            "-f",
+            SURFCAST_EXAMPLES "/Makefile",
+            "-j2",
+            "SURFCASTD=" + program,
+            "SCANS=" + scan_.string(),
+            "PARTS=4",
+            "WORK=" + work(),
+            "MODEL=" + model()};
+  }
+
   /// Whether files of parts are left, which are deleted once their blocks are there.
   [[nodiscard]] bool has_parts() const {
     const fs::directory_iterator files(work());
@@ -113,17 +127,7 @@ TEST_F(BuildStepProgramsTest, MissingPartsAreOneLineAndAFailure) {
 }
 
 TEST_F(BuildStepProgramsTest, MakeRunsTheSteps) {
-  const Words make{"/usr/bin/env",
-                   "make",
-                   "-s",
-                   "-f",
-                   SURFCAST_EXAMPLES "/Makefile",
-                   "-j2",
-                   "SURFCASTD=" SURFCASTD,
-                   "SCANS=" + scan_.string(),
-                   "PARTS=4",
-                   "WORK=" + work(),
-                   "MODEL=" + model()};
+  const Words make = call_of_make(SURFCASTD);
   ASSERT_EQ(run(make), 0);
   EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
   EXPECT_FALSE(has_parts());
@@ -136,6 +140,16 @@ TEST_F(BuildStepProgramsTest, MakeRunsTheSteps) {
   fs::remove(model());
   ASSERT_EQ(run(make), 0);
   EXPECT_EQ(fs::last_write_time(work() + "/blocks-1"), blocks);
+  EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
+}
+
+TEST_F(BuildStepProgramsTest, ARunOfMakeThatFailsKeepsItsParts) {
+  const fs::path failing = folder_ / "failing";  // in the step of the signs
+  std::ofstream(failing) << "#!/bin/sh\n[ $1 != build-signs ] && exec " SURFCASTD " \"$@\"\n";
+  fs::permissions(failing, fs::perms::owner_all);
+  EXPECT_NE(run(call_of_make(failing.string())), 0);
+  for (int part = 1; part <= 4; ++part) EXPECT_TRUE(fs::exists(work() + "/part-" + std::to_string(part))) << part;
+  EXPECT_EQ(run(call_of_make(SURFCASTD)), 0);
   EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
 }
 

@@ -1,6 +1,7 @@
-#include <cstring>
 #include <memory>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 

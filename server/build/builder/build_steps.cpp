@@ -13,6 +13,7 @@
 #include "builder/input_files.h"
 #include "builder/make_part.h"
 #include "builder/memory_budget.h"
+#include "builder/merge_blocks.h"
 #include "builder/model_properties.h"
 #include "builder/ordered_work.h"
 #include "builder/part_blocks.h"
@@ -20,9 +21,7 @@
 #include "builder/step_content.h"
 #include "builder/work_folder.h"
 #include "grid/open_scan.h"
-#include "ldc/subtree.h"
 #include "model/model_writer.h"
-#include "model/write_blocks.h"
 
 namespace surfcast::builder {
 namespace {
@@ -299,52 +298,6 @@ Result<FinishedPart> finish_part(const WorkFolder& folder, size_t part, const Bu
   return FinishedPart{std::move(made->surfels.cloud), made->own};
 }
 
-/// Adds the blocks of all parts to a model, and then the levels above.
-class PartMerger {
- public:
-  PartMerger(const WorkFolder& folder, model::ModelWriter& writer) : folder_(folder), writer_(writer) {}
-
-  Status add_part(size_t part) {
-    const Result<WorkFile> file = folder_.result(WorkStep::kBlocks, part);
-    if (!file) return fail(file);
-    Result<StoredPart> stored = read_part_blocks(*file);
-    if (!stored) return fail(stored);
-    for (size_t i = 0; i < stored->blocks.size(); ++i) {
-      if (Status status = add_block(*file, i, stored->blocks[i]); !status) return status;
-    }
-    writer_.add_statistics(stored->statistics);
-    for (ldc::FrontCell& cell : stored->front) {
-      for (uint32_t& block : cell.blocks) block += first_;
-      front_.push_back(std::move(cell));
-    }
-    first_ += static_cast<uint32_t>(stored->blocks.size());
-    return {};
-  }
-
-  Status add_levels_above(const geometry::RootCube& root, const surfel::SurfelCloud& common) {
-    const std::vector<ldc::TreeBlock> blocks =
-        ldc::build_levels_above(std::move(front_), root, ldc::coarse_attributes(common), first_);
-    return model::write_blocks(writer_, common, blocks, {});
-  }
-
- private:
-  Status add_block(const WorkFile& file, size_t number, StoredPartBlock& stored) {
-    Result<std::vector<std::byte>> bytes = file.read(number);
-    if (!bytes) return fail(bytes);
-    stored.block.bytes = std::move(*bytes);
-    for (uint32_t& child : stored.children) child += first_;
-    const Result<uint32_t> added = writer_.add(stored.block, stored.key, stored.children);
-    if (!added) return fail(added);
-    stored = {};
-    return {};
-  }
-
-  const WorkFolder& folder_;
-  model::ModelWriter& writer_;
-  uint32_t first_ = 0;  ///< number of the first block of the part
-  ldc::Front front_;
-};
-
 Result<model::WriteReport> write_model_of(const WorkFolder& folder, const BuildInputs& inputs, const SceneResult& scene,
                                           const fs::path& target, StageClock& clock) {
   const surfel::SurfelCloud common = common_cloud(inputs, scene.decisions.signs.oriented);
@@ -353,15 +306,8 @@ Result<model::WriteReport> write_model_of(const WorkFolder& folder, const BuildI
   Result<model::ModelWriter> writer = model::ModelWriter::create(target, std::move(schema));
   if (!writer) return fail(writer);
   writer->set_georeference(inputs.georeference());
-  PartMerger merger(folder, *writer);
-  clock.begin("writing blocks", folder.parts());
-  for (size_t part = 0; part < folder.parts(); ++part) {
-    if (Status status = merger.add_part(part); !status) return fail(status);
-    clock.step();
-  }
-  clock.begin("writing levels above", 1);
   const geometry::RootCube root = geometry::root_cube(inputs.bounds());
-  if (Status status = merger.add_levels_above(root, common); !status) return fail(status);
+  if (Status status = merge_blocks(folder, root, common, clock, *writer); !status) return fail(status);
   return writer->finish();
 }
 
@@ -390,10 +336,10 @@ Status note_merged(const WorkFolder& folder, const fs::path& target) {
                       [&target](WorkFileWriter& file) { return file.add(bytes_of_text(trace_of(target))); });
 }
 
-/// A part is not needed any more once its blocks are there, and those signs that they were made with.
+/// A part is not needed any more once its blocks are there, and the signs that they were made with.
 bool is_part_done(const WorkFolder& folder, size_t part) {
   return folder.is_done(WorkStep::kPart, part) ||
-         (folder.is_done(WorkStep::kSigns) && folder.is_done(WorkStep::kBlocks, part));
+         (folder.is_done(WorkStep::kBlocks, part) && folder.is_done(WorkStep::kSigns));
 }
 
 }  // namespace

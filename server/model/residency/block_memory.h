@@ -15,7 +15,7 @@ namespace surfcast::residency {
 /// written by copies on the device alone: see UploadRing.
 class BlockMemory : public TexelSink {
  public:
-  /// Bytes that are on their way into buffers of the device.
+  /// Size of the UploadRing.
   static constexpr size_t kRingBytes = size_t{4} << 20;
 
   /// The largest number of surfels in one buffer texture of the device.
@@ -31,9 +31,8 @@ class BlockMemory : public TexelSink {
   void bind_attributes(GLuint unit) const { attributes_.bind(unit); }
 
  private:
-  /// A small buffer that the host writes, and that is copied from there. A large buffer that the host may write itself
-  /// (GL_DYNAMIC_STORAGE_BIT) is moved by the driver: on an H200 the first write after each enlargement took 0.63 ms a
-  /// MiB, 320 ms at 512 MiB.
+  /// A small buffer that the host writes, and that the device copies from. A driver may move a large buffer that the
+  /// host may write (GL_DYNAMIC_STORAGE_BIT): on an H200 the first write after each enlargement took 0.63 ms per MiB.
   class UploadRing {
    public:
     void copy(std::span<const std::byte> bytes, const gl::Buffer& target, size_t offset);
