@@ -7,7 +7,8 @@
 // antialiased edge instead of a seam in the background colour. Elsewhere the loop ends after one iteration.
 //
 // The variant with SURFCAST_KEEPS_FRONTS writes the depths of the front surfaces. Silhouettes are drawn twice:
-// silhouettes.comp finds them by these depths, and supersample.comp draws their pixels again.
+// silhouettes.comp finds them by these depths, and supersample.comp draws their pixels again. That with
+// SURFCAST_KEEPS_DEPTHS writes the depths between which pixels show something.
 //
 // Tiles with and without large splats are drawn by two variants of this kernel (SURFCAST_LARGE), because the code for
 // large splats would slow down all other tiles. Tiles with long lists are drawn by two more (SURFCAST_TOGETHER), with a
@@ -34,6 +35,9 @@ layout(std430, binding = SURFCAST_BIND_NEXT_TILES) buffer NextTiles { uint next_
 #ifdef SURFCAST_KEEPS_FRONTS
 layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float fronts[]; };
 #endif
+#ifdef SURFCAST_KEEPS_DEPTHS
+layout(std430, binding = SURFCAST_BIND_SHOWN_DEPTHS) writeonly buffer ShownDepths { vec2 shown_depths[]; };
+#endif
 
 #if defined(SURFCAST_SELECTS) && !defined(SURFCAST_EYE_DOME)
 // (Eye-dome lighting looks at all surfaces of a pixel, even those that are hardly visible.)
@@ -46,13 +50,16 @@ layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float f
 #include "include/draw_lane.glsl"
 #include "include/write_rows.glsl"
 
-void write_column(Light light, Rows front, ivec2 first) {
+void write_column(int c, Light light, Rows front, ivec2 first) {
   for (int i = 0; i < SURFCAST_ROWS; ++i) {
     ivec2 at = first + ivec2(0, i);
     if (any(greaterThanEqual(at, frame.region.zw))) continue;
     write_row(light, i, at);
 #ifdef SURFCAST_KEEPS_FRONTS
     fronts[at.y * frame.region.z + at.x] = ROW(front, i);
+#endif
+#ifdef SURFCAST_KEEPS_DEPTHS
+    shown_depths[at.y * frame.region.z + at.x] = vec2(ROW(front, i), ROW(opaque[c], i));
 #endif
   }
 }
@@ -75,7 +82,7 @@ void main() {
   LightColumns light;
   draw_together(tile, SURFCAST_COLUMNS, vec2(frame.region.xy + local) + 0.5, front, light);
   if (own_share() != 0u) return;
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) write_column(light[c], front[c], local + ivec2(c, 0));
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) write_column(c, light[c], front[c], local + ivec2(c, 0));
 }
 #else
 // The state of a lane.
@@ -153,7 +160,7 @@ void main() {
     if (more && state.layer < kMaxLayers) continue;
 #endif
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-      if (c < state.columns) write_column(state.light[c], state.front[c], state.local + ivec2(c, 0));
+      if (c < state.columns) write_column(c, state.light[c], state.front[c], state.local + ivec2(c, 0));
     }
     drawing = begin(state, false);
   }

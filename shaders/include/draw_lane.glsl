@@ -55,12 +55,19 @@ bool belongs_to_this_build(TileLists tile) {
 // Inverse depth that hides everything, as the surface of a pixel to which nothing can be added any more.
 const float kHidesAll = 3e38;
 
+#ifdef SURFCAST_KEEPS_DEPTHS
+Columns opaque;  // inverse depth of the surface that makes a pixel opaque; 0: none does
+#endif
+
 // Initialises the first layer: no depth limit (`limit` is an inverse depth). Only the first `wanted` columns are drawn.
 void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     light[c] = light_zero();
     if (c >= wanted) light[c].transmittance = Rows(0.0);
     limit[c] = Rows(kHidesAll);
+#ifdef SURFCAST_KEEPS_DEPTHS
+    opaque[c] = Rows(0.0);
+#endif
   }
 }
 
@@ -74,7 +81,13 @@ bool composite_columns(inout LightColumns light, ColumnSums sums, Columns before
                        vec2 pixel) {
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+#ifdef SURFCAST_KEEPS_DEPTHS
+    BoolRows open = less(Rows(kOpaque), light[c].transmittance);
+#endif
     composite(light[c], sums[c], before[c], surface[c], one, column(pixel, c), c);
+#ifdef SURFCAST_KEEPS_DEPTHS
+    opaque[c] = mix(opaque[c], surface[c], both(open, at_most(light[c].transmittance, Rows(kOpaque))));
+#endif
     more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
   }
   keep_layers(pixel);

@@ -141,6 +141,7 @@ struct Counters {
 #define SURFCAST_BIND_NEXT_TILES 15   // uint per work group of the splat kernel: tiles started by its lanes
 #define SURFCAST_BIND_LIGHT 2         // vec4 per pixel: linear light and coverage before eye-dome lighting
 #define SURFCAST_BIND_DEPTH 10        // vec2 per pixel: mean log2 of the visible surface's depth, coverage
+#define SURFCAST_BIND_SHOWN_DEPTHS 3  // vec2 per pixel: inverse depths of the front and of the opaque surface
 #define SURFCAST_BIND_FRONTS 11       // float per pixel: inverse depth of the front surface, see silhouettes.comp
 #define SURFCAST_BIND_SILHOUETTES 12  // pixels at silhouettes, see include/silhouette_list.glsl
 // Uniform buffers:

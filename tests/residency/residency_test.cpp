@@ -386,5 +386,73 @@ TEST_F(ResidencyTest, EvictedBlocksLoseTheirAttributes) {
   EXPECT_GT(whole_with_attributes(model)->waited_for, 0u);
 }
 
+/// A root, four children, sixteen grandchildren and 64 leaves of 1000 surfels.
+std::shared_ptr<FakeBlocks> three_splits(uint64_t id) {
+  std::vector<ldc::BlockEntry> blocks{block_at({0, 0, -20}, 4, 1)};
+  for (uint32_t i = 0; i < 21; ++i) split(blocks, i, 4, 1000);
+  return std::make_shared<FakeBlocks>(id, blocks);
+}
+
+class SurveyTest : public ResidencyTest {
+ protected:
+  /// The finest picture; of more than so many surfels a survey that shows the four children.
+  [[nodiscard]] ViewParameters surveyed_above(double surfels) const {
+    const double spacing = 0.9 * selection::projected_spacing(leaves_->tree().blocks()[0], frame_);
+    return {.frame = frame_, .survey = ViewParameters::Survey{surfels, spacing}};
+  }
+
+  std::shared_ptr<FakeBlocks> leaves_ = three_splits(9);
+  ViewedModel tree_{leaves_};
+};
+
+TEST_F(SurveyTest, APictureOfManySurfelsIsSurveyed) {
+  start(400);
+  const Result<PreparedView> view = residency_->prepare_complete(tree_, surveyed_above(63'999), never_);
+  ASSERT_TRUE(view);
+  EXPECT_TRUE(view->survey);
+  EXPECT_THAT(view->selection.draw, ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(leaves_->started(), ElementsAre(0, 1, 2, 3, 4));
+}
+
+TEST_F(SurveyTest, APictureOfFewSurfelsIsNot) {
+  start(400);
+  const Result<PreparedView> view = residency_->prepare_complete(tree_, surveyed_above(64'000), never_);
+  ASSERT_TRUE(view);
+  EXPECT_FALSE(view->survey);
+  EXPECT_EQ(view->selection.draw.size(), 64U);
+}
+
+/// Whether a picture is surveyed depends on the picture alone: the same request has the same bytes.
+TEST_F(SurveyTest, ResidentBlocksDoNotSpareASurvey) {
+  start(400);
+  ASSERT_TRUE(whole(tree_));
+  const Result<PreparedView> view = residency_->prepare_complete(tree_, surveyed_above(63'999), never_);
+  ASSERT_TRUE(view);
+  EXPECT_TRUE(view->survey);
+  EXPECT_THAT(view->selection.draw, ElementsAre(1, 2, 3, 4));
+}
+
+TEST_F(SurveyTest, AViewRequestsTheBlocksOfItsSurveyAlone) {
+  start(400);
+  leaves_->hold();
+  const PreparedView view = residency_->prepare_resident(tree_, surveyed_above(63'999), {}, {});
+  EXPECT_TRUE(view.survey);
+  EXPECT_THAT(view.selection.target, ElementsAre(1, 2, 3, 4));
+  EXPECT_LT(view.missing, 64U);
+  leaves_->release();
+}
+
+TEST_F(SurveyTest, WhatASurveyHidesIsNotLoaded) {
+  start(400);
+  selection::VisibleDepths wall(frame_.width, frame_.height, 0);
+  const std::vector<selection::DepthRange> near(static_cast<size_t>(frame_.width), {1, 1});
+  for (int y = 0; y < frame_.height; ++y) wall.enter(0, y, near);
+  const Result<PreparedView> view = residency_->prepare_complete(tree_, {.frame = frame_, .visible = &wall}, never_);
+  ASSERT_TRUE(view);
+  EXPECT_FALSE(view->survey);
+  EXPECT_THAT(view->selection.draw, ElementsAre(0));
+  EXPECT_THAT(leaves_->started(), ElementsAre(0));
+}
+
 }  // namespace
 }  // namespace surfcast::residency

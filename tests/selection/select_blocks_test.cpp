@@ -408,5 +408,68 @@ TEST(SelectBlocks, AWindowNeedsTheBlocksOfTheWholePictureThatMayBeSeenInIt) {
   }
 }
 
+/// All of the view shows a wall at a depth of 12, but for columns that show the depths of the tree of two_splits().
+VisibleDepths wall_but_for(const geometry::CameraFrame& frame, int first, int last) {
+  VisibleDepths depths(frame.width, frame.height, 0);
+  std::vector<DepthRange> row(static_cast<size_t>(frame.width), DepthRange{1 / 12.0F, 1 / 12.0F});
+  std::fill(row.begin() + first, row.begin() + last, DepthRange{1 / 20.0F, 1 / 20.0F});
+  for (int y = 0; y < frame.height; ++y) depths.enter(0, y, row);
+  return depths;
+}
+
+TEST(SelectBlocks, WhatIsNotSeenIsNotRefined) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  // The children 1 to 4 of the root stand from left to right. The columns from 56 on are those of 3 and 4.
+  const VisibleDepths depths = wall_but_for(frame, 56, 100);
+  SelectionCriteria criteria;
+  criteria.visible = &depths;
+  const BlockSelection selection = select_blocks(tree, frame, criteria, all_of(blocks));
+  EXPECT_THAT(selection.refined, ElementsAre(0, 3, 4));
+  EXPECT_TRUE(std::ranges::binary_search(selection.draw, 1U)) << "hidden, and drawn where it is";
+  EXPECT_EQ(selection.draw.size(), 10U);
+  EXPECT_TRUE(selection.converged());
+  EXPECT_FALSE(selection.budget_reached);
+  expect_cut(tree, frame, selection.draw);
+}
+
+TEST(SelectBlocks, WhatIsHardlySeenMayBeCoarser) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  // About a tenth of the pixels of child 2.
+  const VisibleDepths depths = wall_but_for(frame, 49, 50);
+  SelectionCriteria criteria;
+  criteria.visible = &depths;
+  criteria.spacing = 0.9 * projected_spacing(blocks.blocks()[2], frame);
+  const auto is_refined = [&] {
+    const BlockSelection selection = select_blocks(tree, frame, criteria, all_of(blocks));
+    return std::ranges::binary_search(selection.refined, 2U);
+  };
+  EXPECT_FALSE(is_refined());
+  criteria.visible = nullptr;
+  EXPECT_TRUE(is_refined());
+  criteria.visible = &depths;
+  criteria.spacing *= 0.5;
+  EXPECT_TRUE(is_refined());
+}
+
+TEST(SelectBlocks, WhatIsHiddenLeavesTheBudgetToWhatIsSeen) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  const VisibleDepths depths = wall_but_for(frame, 56, 100);
+  SelectionCriteria criteria;
+  criteria.surfels = 10'000;
+  const auto finest_on_the_right = [&] {
+    const BlockSelection selection = select_blocks(tree, frame, criteria, all_of(blocks));
+    return std::ranges::count_if(selection.draw, [&](uint32_t block) { return block >= 13; });
+  };
+  EXPECT_LT(finest_on_the_right(), 8) << "leaves below the children 3 and 4";
+  criteria.visible = &depths;
+  EXPECT_EQ(finest_on_the_right(), 8);
+}
+
 }  // namespace
 }  // namespace surfcast::selection

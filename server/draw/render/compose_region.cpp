@@ -51,12 +51,28 @@ void read_depth(const RegionTask& task, const SplatBuffers& buffers) {
   add_fronts(fronts, task.drawn, task.region, std::ldexp(1.0F, drawing_unit(task)), *task.depth);
 }
 
-/// Reads the finished pixels, and enters their depths in the depth map if it is asked for. Returns the milliseconds
-/// that it took. Fails on errors of OpenGL up to here.
+/// Enters the depths that the region shows in those of the picture.
+void read_shown_depths(const RegionTask& task, const SplatBuffers& buffers) {
+  std::vector<selection::DepthRange> shown(pixels_drawn(task));
+  const auto bytes = static_cast<GLsizeiptr>(shown.size() * sizeof(selection::DepthRange));
+  glGetNamedBufferSubData(buffers.shown_depths.name(), 0, bytes, shown.data());
+  const float unit = std::ldexp(1.0F, drawing_unit(task));
+  for (selection::DepthRange& pixel : shown) pixel = {pixel.front * unit, pixel.opaque * unit};
+  const Region& region = task.region;
+  const Region& drawn = task.drawn;
+  for (int y = region.y; y < region.y + region.height; ++y) {
+    const auto* row = shown.data() + static_cast<ptrdiff_t>(y - drawn.y) * drawn.width + (region.x - drawn.x);
+    task.shown->enter(region.x, y, {row, static_cast<size_t>(region.width)});
+  }
+}
+
+/// Reads the finished pixels, and enters their depths in the depth map and among the shown depths if these are asked
+/// for. Returns the milliseconds that it took. Fails on errors of OpenGL up to here.
 Result<double> read_picture(const RegionTask& task, const SplatBuffers& buffers, std::span<std::byte> pixels) {
   const Stopwatch watch;
   glGetNamedBufferSubData(buffers.picture.name(), 0, static_cast<GLsizeiptr>(pixels.size()), pixels.data());
   if (task.variant.depth) read_depth(task, buffers);
+  if (task.variant.shown_depths) read_shown_depths(task, buffers);
   const double milliseconds = watch.milliseconds();
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     return fail(error == GL_OUT_OF_MEMORY ? ErrorKind::kLimit : ErrorKind::kInternal,

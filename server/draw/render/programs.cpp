@@ -82,6 +82,11 @@ std::string fronts_define(bool kept) {
   return kept ? "#define SURFCAST_KEEPS_FRONTS\n" : "";
 }
 
+/// Of what the splat kernel keeps of each pixel.
+std::string kept_defines(const Variant& variant) {
+  return fronts_define(variant.keeps_fronts()) + (variant.shown_depths ? "#define SURFCAST_KEEPS_DEPTHS\n" : "");
+}
+
 std::string layers_define(const Variant& variant) {
   return variant.layered ? "#define SURFCAST_LAYERS\n" : "";
 }
@@ -225,14 +230,14 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
     return {};
   };
   constexpr int kPixels = SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT;
-  const std::string fronts = fronts_define(variant.keeps_fronts());
+  const std::string kept = kept_defines(variant);
   const int small_lanes = shape_.whole_tiles ? 1 : kPixels;
   LongListPrograms programs;
   Status status = compile(programs.splat, tile_kernel(variant), false,
-                          lane_defines(shape_.whole_tiles) + shares(tile_lanes, small_lanes) + fronts);
+                          lane_defines(shape_.whole_tiles) + shares(tile_lanes, small_lanes) + kept);
   if (status) {
     status = compile(programs.splat_large, tile_kernel(variant), true,
-                     lane_defines(false) + shares(most_lanes, kPixels) + fronts);
+                     lane_defines(false) + shares(most_lanes, kPixels) + kept);
   }
   if (status && variant.silhouettes) {
     status = compile(programs.supersample, "supersample.comp", false,
@@ -370,11 +375,11 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   const std::string at_once = splat + define("SURFCAST_TILES_AT_ONCE", shape_.tiles_at_once);
   const std::string small = at_once + lane_defines(shape_.whole_tiles);
   const std::string large = at_once + lane_defines(false) + "#define SURFCAST_LARGE\n";
-  const std::string fronts = fronts_define(variant.keeps_fronts());
+  const std::string kept = kept_defines(variant);
   const std::string selecting = selects(variant) ? "#define SURFCAST_SELECTS\n" : "";
   const char* kernel = tile_kernel(variant);
-  Status status = compile(programs.splat, plain(kernel), small + fronts + selecting);
-  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + fronts);
+  Status status = compile(programs.splat, plain(kernel), small + kept + selecting);
+  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + kept);
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);

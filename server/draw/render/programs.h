@@ -31,6 +31,7 @@ struct Variant {
   bool eye_dome = false;
   bool silhouettes = false;      ///< silhouettes are supersampled
   bool depth = false;            ///< the depth of the picture is asked for and known
+  bool shown_depths = false;     ///< the depths that pixels show are kept; without silhouettes
   bool blends_behind = false;    ///< see PictureRequest::blends_behind
   bool transparent = false;      ///< surfels are seen through
   bool by_file = false;          ///< their opacities are those of the scan; with transparent

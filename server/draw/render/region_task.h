@@ -12,6 +12,7 @@
 #include "residency/block_memory.h"
 #include "residency/block_pool.h"
 #include "selection/block_hull.h"
+#include "selection/visible_depths.h"
 
 namespace surfcast::render {
 
@@ -35,10 +36,11 @@ struct RegionTask {
   Variant variant;
   const picture::PictureRequest* request = nullptr;
   DisplayOptions display;
-  const ConstantTexels* colors = nullptr;  ///< color_table of `display`, if it is mapped
-  size_t list_entries = 0;                 ///< the most entries of all tile lists together
-  picture::DepthMap* depth = nullptr;      ///< with Variant::depth: of the picture; the region's surfaces are added
-  bool among_gaussians = false;            ///< the picture has Gaussians, whether or not the region does
+  const ConstantTexels* colors = nullptr;     ///< color_table of `display`, if it is mapped
+  size_t list_entries = 0;                    ///< the most entries of all tile lists together
+  picture::DepthMap* depth = nullptr;         ///< with Variant::depth: of the picture; the region's surfaces are added
+  selection::VisibleDepths* shown = nullptr;  ///< with Variant::shown_depths: of the picture, likewise
+  bool among_gaussians = false;               ///< the picture has Gaussians, whether or not the region does
 };
 
 /// Milliseconds and counts of one region.

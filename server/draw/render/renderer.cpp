@@ -21,9 +21,10 @@
 #include "render/programs.h"
 #include "render/scene.h"
 #include "render/splat_buffers.h"
+#include "render/survey.h"
 #include "render/transfer_presets.h"
+#include "render/variant_of_picture.h"
 #include "residency/packing.h"
-#include "surfel/curvature.h"
 
 namespace surfcast::render {
 namespace {
@@ -36,12 +37,6 @@ size_t pixel_bytes(picture::PixelFormat format) {
   return format == picture::PixelFormat::kSrgb8 ? 4 : 4 * sizeof(float);
 }
 
-/// True if the colours do not show the shape, so lighting is needed.
-bool lit_by_default(const model::ModelInfo& info, const DisplayOptions& display) {
-  if (display.color == picture::SurfelColor::kStored) return info.color_bits == 0;
-  return display.color == picture::SurfelColor::kElevation || display.color == picture::SurfelColor::kClassification;
-}
-
 selection::Sides sides_of(const DisplayOptions& display) {
   return display.through.any ? selection::Sides::kBoth : selection::Sides::kFront;
 }
@@ -52,42 +47,6 @@ std::optional<double> ghost_spacing(const DisplayOptions& display, const picture
   constexpr double kFinest = 2;
   if (!display.through.ghosts) return std::nullopt;
   return std::max(kCoarser * request.spacing, kFinest);
-}
-
-/// Chooses the programs of surfels that are seen through.
-void set_transparency(const DisplayOptions& display, const picture::PictureRequest& request, Variant& variant) {
-  variant.transparent = display.through.any;
-  if (!display.through.any) return;
-  variant.by_file = display.through.by_file;
-  variant.by_class = display.through.by_class;
-  variant.ghosts = display.through.ghosts;
-  variant.xray = request.xray == picture::XRay::kSorted;
-  variant.density = request.xray == picture::XRay::kDensity;
-  variant.silhouettes = false;
-}
-
-Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
-                   const picture::PictureRequest& request) {
-  Variant variant;
-  variant.colored = info.color_bits > 0 || display.color != picture::SurfelColor::kStored;
-  variant.lit = request.shading == picture::Shading::kLit ||
-                (request.shading == picture::Shading::kAuto && lit_by_default(info, display));
-  variant.float_picture = request.format == picture::PixelFormat::kLinearFloat;
-  variant.color = display.color;
-  variant.hides_classes = display.hides_classes;
-  variant.clipped = display.clipped;
-  variant.scatter = info.scatter > 0;
-  variant.curved = surfel::has_curvature(info.scalar_names);
-  variant.shaded = request.volumes.shaded;
-  variant.volume_surfaces = !display.volumes.isos.empty() || !display.volumes.slices.empty();
-  variant.eye_dome = request.eye_dome.strength > 0;
-  variant.blends_behind = request.blends_behind;
-  variant.exact = request.splat_convention == picture::SplatConvention::kExact && !request.rest_spacing;
-  variant.superquadrics = request.glyphs.shape == picture::GlyphShape::kSuperquadric;
-  variant.silhouettes = request.silhouettes && request.normalization == picture::Normalization::kPixel &&
-                        request.filter == picture::Filter::kEwa;
-  set_transparency(display, request, variant);
-  return variant;
 }
 
 /// Copies a region from the pixels of `written`, which contains it, to the image of `window`.
@@ -124,6 +83,37 @@ uint64_t cut_of(const selection::BlockSelection& selection) {
   return hash_of(std::as_bytes(std::span(selection.draw))) | 1;
 }
 
+/// A picture, or a window of it, that is being drawn.
+struct Part {
+  Scene& scene;
+  const picture::PictureRequest& request;
+  const DisplayOptions& display;
+  geometry::Camera camera;
+  geometry::CameraFrame frame;
+  std::optional<Region> window;
+  const Preemption& preemption;
+
+  [[nodiscard]] Region region() const { return window.value_or(Region{0, 0, request.width, request.height}); }
+  [[nodiscard]] ShownPart shown() const {
+    return {frame, request.spacing, request.clip, request.hidden_classes, request.hidden_models};
+  }
+  /// Whether it may be surveyed: at rest, and of opaque surfaces alone.
+  [[nodiscard]] bool may_be_surveyed() const {
+    return scene.has_surfaces() && !scene.mixed() && !display.through.any && !window && request.viewer == 0 &&
+           !picture::has_budget(request) && request.spacing > 0 && request.filter == picture::Filter::kEwa &&
+           request.normalization == picture::Normalization::kPixel;
+  }
+};
+
+/// Adds what the preparation of the survey took.
+void add_costs(const residency::PreparedView& survey, residency::PreparedView& view) {
+  view.waited_for += survey.waited_for;
+  view.select_ms += survey.select_ms;
+  view.load_ms += survey.load_ms;
+  view.decode_ms += survey.decode_ms;
+  view.upload_ms += survey.upload_ms;
+}
+
 /// True if a view differs from the picture that the client displays, and few enough blocks are missing.
 bool worth_drawing(const picture::PictureRequest& request, const residency::PreparedView& view, uint64_t cut) {
   if (request.displayed_cut != 0 && cut == request.displayed_cut) return false;
@@ -150,6 +140,7 @@ struct Renderer::State {
         kinds(config.kinds),
         motion_glyphs(config.motion_glyphs),
         viewers(config.viewers),
+        surveys(config.surveys),
         list_entries(std::min(config.list_entries.value_or(residency::BlockMemory::device_limit()),
                               residency::BlockMemory::device_limit())),
         surfels(device.memory.gpu / sizeof(glm::uvec4), device.software),
@@ -188,14 +179,10 @@ struct Renderer::State {
   void end_picture();
   void release_models();
   Result<Scene*> scene_of(const std::shared_ptr<const model::ModelFile>& model);
-  Result<residency::PreparedView> prepare(Scene& scene, const picture::PictureRequest& request,
-                                          const DisplayOptions& display, const geometry::Camera& camera,
-                                          const geometry::CameraFrame& frame, const std::optional<Region>& window,
-                                          const Preemption& preemption);
-  Result<RegionStats> draw_regions(const Scene& scene, const picture::PictureRequest& request,
-                                   const DisplayOptions& display, const geometry::CameraFrame& frame,
-                                   const residency::PreparedView& view, const Region& window,
-                                   const Preemption& preemption, picture::Frame& result);
+  Result<residency::PreparedView> prepare(const Part& part);
+  Result<RegionStats> draw_regions(const Part& part, const residency::PreparedView& view,
+                                   selection::VisibleDepths* shown, picture::Frame& result);
+  Result<RegionStats> draw_survey(const Part& part, residency::PreparedView& view, picture::Frame& result);
   const ConstantTexels* colors_of(const DisplayOptions& display);
   [[nodiscard]] picture::FrameStats stats_of(const Scene& scene, const residency::PreparedView& view,
                                              const RegionStats& drawn) const;
@@ -215,6 +202,7 @@ struct Renderer::State {
       color_tables;        ///< made at their first use
   uint32_t motion_glyphs;  ///< see RendererConfig
   size_t viewers;          ///< see RendererConfig
+  bool surveys;            ///< see RendererConfig
   size_t list_entries;     ///< of all tile lists of a region
   residency::BlockMemory surfels;
   residency::Residency residency;
@@ -248,16 +236,16 @@ Result<Scene*> Renderer::State::scene_of(const std::shared_ptr<const model::Mode
   return scenes.emplace(model->id(), std::move(*scene)).first->second.get();
 }
 
-Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const picture::PictureRequest& request,
-                                                         const DisplayOptions& display, const geometry::Camera& camera,
-                                                         const geometry::CameraFrame& frame,
-                                                         const std::optional<Region>& window,
-                                                         const Preemption& preemption) {
+/// Prepares the picture, or the survey that it needs first.
+Result<residency::PreparedView> Renderer::State::prepare(const Part& part) {
+  Scene& scene = part.scene;
+  const picture::PictureRequest& request = part.request;
+  const DisplayOptions& display = part.display;
   const std::vector<bool> clear = clear_blocks(scene.model(), display.volumes);
   const std::vector<bool> hidden_members = model::hidden_members(scene.model(), request.hidden_models);
   std::vector<uint32_t> roots;  // where members are hidden
   if (!hidden_members.empty()) roots = model::shown_roots(scene.model(), hidden_members);
-  residency::ViewParameters parameters{frame,
+  residency::ViewParameters parameters{part.frame,
                                        request.spacing,
                                        display.clipped ? &request.clip : nullptr,
                                        display.attributes,
@@ -267,18 +255,27 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
                                        sides_of(display),
                                        ghost_spacing(display, request),
                                        display.glyph_reaches.empty() ? nullptr : &display.glyph_reaches};
-  if (window) parameters.window = window_of(*window);
+  if (part.window) parameters.window = window_of(*part.window);
   if (!hidden_members.empty()) parameters.roots = &roots;
   if (request.rest_spacing && scene.has_glyphs()) {
     parameters.items = &scene.glyphs();
     parameters.most_items = most_glyphs(request, motion_glyphs);
   }
+  Surveys::Depths visible;  // lives as long as the preparation, in which another picture may be drawn
+  if (surveys && part.may_be_surveyed()) {
+    visible = scene.surveys().find(part.shown());
+    parameters.visible = visible.get();
+    if (!visible) {
+      parameters.survey = {surfels_worth_a_survey(request.width, request.height, request.spacing),
+                           survey_spacing(request.spacing)};
+    }
+  }
   if (request.loading == picture::Loading::kWait)
-    return residency.prepare_complete(scene.viewed(), parameters, preemption);
+    return residency.prepare_complete(scene.viewed(), parameters, part.preemption);
   if (request.viewer == 0) return residency.prepare_resident(scene.viewed(), parameters, {}, {});
   ViewerHistory& history = scene.history_of(request.viewer, viewers);
   const std::optional<geometry::CameraFrame> ahead =
-      update_and_extrapolate(history, camera, request.width, request.height);
+      update_and_extrapolate(history, part.camera, request.width, request.height);
   residency::PreparedView view = residency.prepare_resident(scene.viewed(), parameters, history.refined, ahead);
   history.refined = view.selection.refined;
   return view;
@@ -292,10 +289,14 @@ const ConstantTexels* Renderer::State::colors_of(const DisplayOptions& display) 
   return &color_tables.emplace(key, ConstantTexels::make("colours", color_table(display))).first->second;
 }
 
-Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const picture::PictureRequest& request,
-                                                  const DisplayOptions& display, const geometry::CameraFrame& frame,
-                                                  const residency::PreparedView& view, const Region& window,
-                                                  const Preemption& preemption, picture::Frame& result) {
+/// `shown`: the depths that the picture shows are entered there, unless it is null.
+Result<RegionStats> Renderer::State::draw_regions(const Part& part, const residency::PreparedView& view,
+                                                  selection::VisibleDepths* shown, picture::Frame& result) {
+  const Scene& scene = part.scene;
+  const picture::PictureRequest& request = part.request;
+  const DisplayOptions& display = part.display;
+  const geometry::CameraFrame& frame = part.frame;
+  const Region window = part.region();
   Variant variant = variant_of(scene.model().info(), display, request);
   if (!scene.has_surfaces()) variant.eye_dome = variant.silhouettes = false;
   if (scene.has_gaussians() || scene.has_glyphs()) variant.eye_dome = false;
@@ -304,7 +305,9 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
   variant.depth = request.depth_texels > 0 && !variant.density;  // a medium has no surfaces
   if (variant.depth) result.depth = picture::empty_depth_map(request.width, request.height, request.depth_texels);
   result.depth.seen_through = variant.depth && (variant.transparent || !scene.model().volumes().empty());
-  variant.silhouettes &= view.nothing_pending;  // a picture that will soon be redrawn does not need supersampling
+  // A picture that will soon be redrawn does not need supersampling.
+  variant.silhouettes &= view.nothing_pending && !view.survey;
+  variant.shown_depths = shown != nullptr;
   const bool layered = scene.mixed() || scene.has_glyphs();  // many buffers for every pixel
   const int margin = variant.eye_dome || variant.silhouettes || scene.mixed() ? kNeighbourMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
@@ -314,8 +317,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
   std::vector<Region> regions =
       cut_into_regions(window.width, window.height, margin, layered ? kMaxLayeredSide : kMaxRegionSide);
   while (!regions.empty()) {
-    const Region part = regions.back();
-    const Region region{part.x + window.x, part.y + window.y, part.width, part.height};
+    const Region at = regions.back();
+    const Region region{at.x + window.x, at.y + window.y, at.width, at.height};
     regions.pop_back();
     const Region drawn = with_margin(region, margin, request.width, request.height);
     RegionTask task{&surfels,
@@ -331,6 +334,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     colors_of(display),
                     list_entries,
                     variant.depth ? &result.depth : nullptr,
+                    shown,
                     scene.has_gaussians()};
     for (const uint32_t block :
          selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
@@ -344,10 +348,10 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
     const Result<std::optional<RegionStats>> stats =
-        compose_region(task, programs, buffers[depth - 1], preemption, pixels);
+        compose_region(task, programs, buffers[depth - 1], part.preemption, pixels);
     if (!stats) return fail(stats);
     if (!*stats) {
-      const std::vector<Region> halves = halves_of(part);
+      const std::vector<Region> halves = halves_of(at);
       if (halves.empty()) return fail(ErrorKind::kLimit, "too many surfels in four by four pixels");
       regions.insert(regions.end(), halves.begin(), halves.end());
       continue;
@@ -377,6 +381,30 @@ picture::FrameStats Renderer::State::stats_of(const Scene& scene, const residenc
   return stats;
 }
 
+/// Draws the survey of a picture, and prepares the picture, which `view` becomes unless it has to wait for blocks: then
+/// the survey is what is there to be shown.
+Result<RegionStats> Renderer::State::draw_survey(const Part& part, residency::PreparedView& view,
+                                                 picture::Frame& result) {
+  const picture::PictureRequest& request = part.request;
+  const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+  result.image.pixels.resize(pixels * pixel_bytes(request.format));
+  const auto depths =
+      std::make_shared<selection::VisibleDepths>(request.width, request.height, survey_spacing(request.spacing));
+  const Result<RegionStats> drawn = draw_regions(part, view, depths.get(), result);
+  if (!drawn) return drawn;
+  part.scene.surveys().keep(part.shown(), depths);
+  Result<residency::PreparedView> next = prepare(part);
+  if (!next) return fail(next);
+  if (next->missing > 0) {
+    view.missing = next->missing;
+    return drawn;
+  }
+  add_costs(view, *next);
+  view = std::move(*next);
+  result.image.pixels.clear();
+  return drawn;
+}
+
 /// Draws a picture, or a window of it, whose pixels are those of the whole picture.
 Result<picture::Frame> Renderer::State::draw_part(const std::shared_ptr<const model::ModelFile>& model,
                                                   const picture::PictureRequest& request,
@@ -400,23 +428,30 @@ Result<picture::Frame> Renderer::State::draw_part(const std::shared_ptr<const mo
   result.camera = scene.camera_of(request);
   const Result<geometry::CameraFrame> frame = geometry::make_camera_frame(result.camera, request.width, request.height);
   if (!frame) return fail(frame);
-  const Result<residency::PreparedView> view =
-      prepare(scene, request, *display, result.camera, *frame, window, preemption);
+  const Part part{scene, request, *display, result.camera, *frame, window, preemption};
+  Result<residency::PreparedView> view = prepare(part);
   if (!view) return fail(view);
-
-  result.converged = view->selection.converged();
-  result.nothing_pending = view->nothing_pending;
-  result.cut = cut_of(view->selection);
-  const Region drawn_part = window.value_or(Region{0, 0, request.width, request.height});
-  result.image = {drawn_part.width, drawn_part.height, request.format, {}};
+  const Region region = part.region();
+  const size_t pixels = static_cast<size_t>(region.width) * static_cast<size_t>(region.height);
+  result.image = {region.width, region.height, request.format, {}};
   RegionStats drawn;
-  if (worth_drawing(request, *view, result.cut)) {
-    const size_t pixels = static_cast<size_t>(drawn_part.width) * static_cast<size_t>(drawn_part.height);
+  bool surveyed = false;
+  if (view->survey && view->missing == 0) {
+    const Result<RegionStats> survey = draw_survey(part, *view, result);
+    if (!survey) return fail(survey);
+    drawn = *survey;
+    surveyed = view->survey;
+  }
+
+  result.converged = view->selection.converged() && !view->survey;
+  result.nothing_pending = view->nothing_pending && !view->survey;
+  result.cut = cut_of(view->selection);
+  if (!surveyed && worth_drawing(request, *view, result.cut)) {
     result.image.pixels.resize(pixels * pixel_bytes(request.format));
-    const Result<RegionStats> regions =
-        draw_regions(scene, request, *display, *frame, *view, drawn_part, preemption, result);
+    const Result<RegionStats> regions = draw_regions(part, *view, nullptr, result);
     if (!regions) return fail(regions);
-    drawn = *regions;
+    drawn += *regions;
+    drawn.splats = regions->splats;
   }
   result.stats = stats_of(scene, *view, drawn);
   result.spacing = request.spacing;

@@ -31,7 +31,8 @@ struct RendererConfig {
   size_t viewers = 64;                   ///< of one model whose motion is remembered; least recently seen are forgotten
   bool gpu_kernels = false;              ///< also draws software GL with the kernels for GPUs: for tests
   std::optional<size_t> list_entries{};  ///< of the tiles of a region, see docs/architecture.md; none: what fits
-  std::string shader_defines{};          ///< text before every shader, for programs that measure other kernels
+  bool surveys = true;           ///< false: what is not seen is drawn as finely as what is; for tests and measurements
+  std::string shader_defines{};  ///< text before every shader, for programs that measure other kernels
   kinds::KindTable kinds = kinds::built_in_kinds();  ///< kinds of blocks that can be drawn; outlives the renderer
   residency::LoadGuard* load_guard = nullptr;        ///< is told of every block that is loaded; outlives the renderer
 };

@@ -9,6 +9,7 @@
 #include "kinds/file_blocks.h"
 #include "model/model_file.h"
 #include "picture/picture.h"
+#include "render/survey.h"
 #include "residency/residency.h"
 
 namespace surfcast::render {
@@ -53,6 +54,7 @@ class Scene {
 
   /// The history of a viewer. Only the `most` most recently seen viewers are remembered.
   ViewerHistory& history_of(uint64_t viewer, size_t most);
+  Surveys& surveys() { return surveys_; }
 
  private:
   struct Kinds {
@@ -73,6 +75,7 @@ class Scene {
   Kinds kinds_;
   bool has_fronts_;
   std::list<ViewerHistory> viewers_;  ///< most recently seen first
+  Surveys surveys_;
 };
 
 }  // namespace surfcast::render

@@ -135,6 +135,7 @@ struct SplatBuffers {
   StorageBuffer depth{"depth"};
   StorageBuffer eye_dome{"eye-dome constants"};
   StorageBuffer fronts{"fronts"};
+  StorageBuffer shown_depths{"shown depths"};
   StorageBuffer silhouettes{"silhouettes"};
   VolumeBuffers volume;
   GaussianBuffers gaussians;

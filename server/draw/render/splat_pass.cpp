@@ -54,6 +54,7 @@ void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
     buffers.unfinished.bind_for_reading(SURFCAST_UNIT_UNFINISHED);
   }
   if (task.variant.keeps_fronts()) buffers.fronts.bind(SURFCAST_BIND_FRONTS);
+  if (task.variant.shown_depths) buffers.shown_depths.bind(SURFCAST_BIND_SHOWN_DEPTHS);
   if (task.variant.silhouettes) buffers.silhouettes.bind(SURFCAST_BIND_SILHOUETTES);
 }
 
@@ -79,6 +80,7 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Reg
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
   }
   if (task.variant.keeps_fronts()) buffers.fronts.reserve(pixels_of_tiles(task) * sizeof(float));
+  if (task.variant.shown_depths) buffers.shown_depths.reserve(pixels_of_tiles(task) * sizeof(glm::vec2));
   if (task.variant.silhouettes) clear_silhouettes(task, has_long_lists(counters), buffers);
   reserve_unfinished(task, programs.lanes, buffers);
   const auto tiles = static_cast<uint32_t>(task.constants.tiles.z);

@@ -3,6 +3,22 @@
 #include <algorithm>
 
 namespace surfcast::residency {
+namespace {
+
+/// About how many surfels of these blocks are drawn. Blocks that are finer than the picture's spacing are drawn with
+/// the surfels that they are merged to.
+double surfels_at_spacing(const ViewedModel& model, const ViewParameters& parameters,
+                          std::span<const uint32_t> blocks) {
+  double surfels = 0;
+  for (const uint32_t number : blocks) {
+    const ldc::BlockEntry& block = model.tree.tree.blocks()[number];
+    const double ratio = selection::projected_spacing(block, parameters.frame) / parameters.spacing;
+    surfels += block.items * std::min(1.0, ratio * ratio);
+  }
+  return surfels;
+}
+
+}  // namespace
 
 Residency::Residency(TexelSink& sink, const ResidencyLimits& limits, LoadGuard* guard)
     : pool_(limits.pages, sink), loader_(limits.loader, guard), upload_bytes_(limits.upload_bytes) {}
@@ -21,12 +37,23 @@ std::vector<bool> Residency::residents(const ViewedModel& model, bool attributes
 
 selection::BlockSelection Residency::select(const ViewedModel& model, const ViewParameters& parameters,
                                             std::span<const uint32_t> was_refined) const {
-  const selection::SelectionCriteria limits{parameters.spacing,       pool_.usable_surfels(), BlockPool::kPageTexels,
-                                            parameters.clip,          parameters.hidden,      parameters.sides,
-                                            parameters.ghost_spacing, parameters.reaches,     parameters.items,
-                                            parameters.most_items,    parameters.window,      parameters.roots};
+  const selection::SelectionCriteria limits{
+      parameters.spacing, pool_.usable_surfels(),   BlockPool::kPageTexels, parameters.clip,  parameters.hidden,
+      parameters.sides,   parameters.ghost_spacing, parameters.reaches,     parameters.items, parameters.most_items,
+      parameters.window,  parameters.roots,         parameters.visible};
   return selection::select_blocks(model.tree, parameters.frame, limits, residents(model, parameters.attributes),
                                   was_refined);
+}
+
+/// Selects the blocks of a picture or of its survey. `parameters` become those of what is selected.
+selection::BlockSelection Residency::select_or_survey(const ViewedModel& model, ViewParameters& parameters,
+                                                      std::span<const uint32_t> was_refined, PreparedView& view) const {
+  selection::BlockSelection selection = select(model, parameters, was_refined);
+  if (!parameters.survey) return selection;
+  if (surfels_at_spacing(model, parameters, selection.target) <= parameters.survey->surfels) return selection;
+  view.survey = true;
+  parameters.spacing = parameters.survey->spacing;
+  return select(model, parameters, was_refined);
 }
 
 std::vector<uint32_t> Residency::missing(const ViewedModel& model, std::span<const uint32_t> blocks,
@@ -108,12 +135,13 @@ Status Residency::load(const ViewedModel& model, std::span<const uint32_t> block
 Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const ViewParameters& parameters,
                                                  const Preemption& preemption) {
   PreparedView view;
+  ViewParameters selected = parameters;
   pool_.begin_frame();
   const std::vector<uint32_t> roots = missing(model, coarse_roots(model, parameters), parameters.attributes);
   if (Status status = load(model, roots, parameters.attributes, preemption, view); !status) return fail(status);
 
   const Stopwatch select_watch;
-  view.selection = select(model, parameters, {});
+  view.selection = select_or_survey(model, selected, {}, view);
   view.select_ms = select_watch.milliseconds();
   use(model, view.selection.target);
   const std::vector<uint32_t> wanted = missing(model, view.selection.target, parameters.attributes);
@@ -121,7 +149,7 @@ Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const
   if (Status status = load(model, wanted, parameters.attributes, preemption, view); !status) return fail(status);
 
   const Stopwatch draw_watch;
-  if (!wanted.empty()) view.selection = select(model, parameters, {});
+  if (!wanted.empty()) view.selection = select(model, selected, {});
   view.select_ms += draw_watch.milliseconds();
   return view;
 }
@@ -212,16 +240,17 @@ PreparedView Residency::prepare_resident(const ViewedModel& model, const ViewPar
                                          std::span<const uint32_t> was_refined,
                                          const std::optional<geometry::CameraFrame>& ahead) {
   PreparedView view;
+  ViewParameters selected = parameters;
   pool_.begin_frame();
   const Stopwatch watch;
-  view.selection = select(model, parameters, was_refined);
+  view.selection = select_or_survey(model, selected, was_refined, view);
   view.waited_for = static_cast<uint32_t>(view.selection.wanted.size());
   use(model, view.selection);
   if (upload_some(model, parameters, view) > 0) {
-    view.selection = select(model, parameters, was_refined);
+    view.selection = select(model, selected, was_refined);
     use(model, view.selection);
   }
-  std::vector<uint32_t> blocks = load_requests(model, parameters, view.selection);
+  std::vector<uint32_t> blocks = load_requests(model, selected, view.selection);
   view.nothing_pending = blocks.empty();
   view.missing = static_cast<uint32_t>(blocks.size());
   if (ahead) add_requests_ahead(model, parameters, view.selection, *ahead, blocks);

@@ -37,8 +37,15 @@ struct ViewParameters {
   /// See SelectionCriteria; outlives the preparation. A picture at rest has no limit.
   const std::vector<uint32_t>* items = nullptr;
   uint64_t most_items = std::numeric_limits<uint64_t>::max();
-  std::optional<selection::Window> window{};     ///< see SelectionCriteria
-  const std::vector<uint32_t>* roots = nullptr;  ///< see SelectionCriteria; outlives the preparation
+  std::optional<selection::Window> window{};          ///< see SelectionCriteria
+  const std::vector<uint32_t>* roots = nullptr;       ///< see SelectionCriteria; outlives the preparation
+  const selection::VisibleDepths* visible = nullptr;  ///< see SelectionCriteria; outlives the preparation
+  /// A picture that is prepared instead.
+  struct Survey {
+    double surfels = 0;  ///< if more of them would be drawn
+    double spacing = 0;  ///< see SelectionCriteria
+  };
+  std::optional<Survey> survey{};
 };
 
 /// The blocks that a picture is drawn from, and the cost of making them resident.
@@ -47,6 +54,7 @@ struct PreparedView {
   uint32_t waited_for = 0;      ///< requested blocks that were not resident at first
   uint32_t missing = 0;         ///< requested blocks that are not resident yet
   bool nothing_pending = true;  ///< no missing block is still to be loaded
+  bool survey = false;          ///< of the spacing of ViewParameters::survey
   double select_ms = 0;
   double load_ms = 0;    ///< waiting for blocks
   double decode_ms = 0;  ///< total time of the worker threads for blocks that arrived meanwhile
@@ -90,6 +98,9 @@ class Residency {
   [[nodiscard]] std::vector<bool> residents(const ViewedModel& model, bool attributes) const;
   [[nodiscard]] selection::BlockSelection select(const ViewedModel& model, const ViewParameters& parameters,
                                                  std::span<const uint32_t> was_refined) const;
+  [[nodiscard]] selection::BlockSelection select_or_survey(const ViewedModel& model, ViewParameters& parameters,
+                                                           std::span<const uint32_t> was_refined,
+                                                           PreparedView& view) const;
   [[nodiscard]] std::vector<uint32_t> missing(const ViewedModel& model, std::span<const uint32_t> blocks,
                                               bool attributes) const;
   [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model, const ViewParameters& parameters) const;

@@ -60,10 +60,14 @@ std::vector<BlockHull> block_hulls(const ldc::BlockTree& tree) {
   return hulls;
 }
 
+double margin_of(const BlockHull& hull, double least_reach) {
+  return kReachInRadii * std::max(hull.reach, least_reach);
+}
+
 bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye, Sides sides,
                     double least_reach) {
-  const double reach = std::max(hull.reach, least_reach);
-  return frustum.may_see(hull.centres, kReachInRadii * reach) && (sides == Sides::kBoth || !faces_away(hull, eye));
+  return frustum.may_see(hull.centres, margin_of(hull, least_reach)) &&
+         (sides == Sides::kBoth || !faces_away(hull, eye));
 }
 
 double projected_spacing(const ldc::BlockEntry& block, const geometry::CameraFrame& frame) {

@@ -24,12 +24,15 @@ std::vector<BlockHull> block_hulls(const ldc::BlockTree& tree);
 /// The same hulls with at least this reach.
 [[nodiscard]] std::vector<BlockHull> with_reach(std::vector<BlockHull> hulls, double reach);
 
+/// How far the surfels of a hull reach beyond their centres, world units. `least_reach`: of the hull.
+double margin_of(const BlockHull& hull, double least_reach = 0);
+
 /// Whether surfels are seen from behind: those that are seen through have a far side.
 enum class Sides { kFront, kBoth };
 
 /// Conservative culling: false only if no part of the hull touches a pixel of the frustum's rectangle, or all its
-/// normals face away from the eye and only front sides are seen (visibility cones, Pfister 2000). `least_reach`: of the
-/// hull.
+/// normals face away from the eye and only front sides are seen (visibility cones, Pfister 2000). `least_reach`: see
+/// margin_of.
 bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye, Sides sides = Sides::kFront,
                     double least_reach = 0);
 

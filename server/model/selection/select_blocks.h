@@ -10,6 +10,7 @@
 #include "geometry/clip.h"
 #include "ldc/block_tree.h"
 #include "selection/block_hull.h"
+#include "selection/visible_depths.h"
 
 namespace surfcast::selection {
 
@@ -49,6 +50,8 @@ struct SelectionCriteria {
   std::optional<Window> window{};  ///< the part of the picture that is to be drawn; none: all of it
   /// The blocks from which refinement starts: none is below another one. Null: the roots of the tree.
   const std::vector<uint32_t>* roots = nullptr;
+  /// Of a coarse picture of this view: blocks of which little is seen are refined less. Null: all are seen.
+  const VisibleDepths* visible = nullptr;
 };
 
 /// A block that is not resident and would refine the picture.
@@ -78,9 +81,12 @@ struct BlockSelection {
 ///   reach the requested spacing or the budget is used up. The result is the cut of smallest error that fits. A block
 ///   whose children exceed one of the budgets stays; others may still be refined. Roots are selected even if they
 ///   exceed the budgets.
-/// - Hysteresis: `was_refined` is `refined` of the previous picture, or empty. A refined block stays refined until its
-///   projected spacing is a fifth below the requested one. Small camera motions then do not switch levels back and
-///   forth. The requested spacing is still reached, because hysteresis only delays coarsening.
+/// - Visibility: a block of which nothing is seen is not refined. If it is seen in less than a fifth of its pixels, its
+///   projected spacing counts as smaller by the root of this ratio.
+/// - Hysteresis: `was_refined` is `refined` of the previous picture, or empty. A refined block stays refined while it
+/// is
+///   hidden, and until its projected spacing is a fifth below the requested one. Small camera motions then do not
+///   switch levels back and forth. The requested spacing is still reached, because hysteresis only delays coarsening.
 /// - Stand-ins: if a block of the target is not resident, its nearest resident ancestor stands in for it and all
 ///   its siblings. If the view just became coarser and the budgets allow, its resident descendants stand in instead.
 ///

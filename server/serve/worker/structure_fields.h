@@ -218,9 +218,9 @@ namespace surfcast::render {
 template <typename Archive, worker::Is<RendererConfig> T>
 void fields(Archive& archive, T& value) {
   auto& [gpu, gpu_bytes, host_bytes, sharers, decoders, upload_bytes, motion_glyphs, viewers, gpu_kernels, list_entries,
-         shader_defines, kinds, load_guard] = value;
+         surveys, shader_defines, kinds, load_guard] = value;
   archive(gpu, gpu_bytes, host_bytes, sharers, decoders, upload_bytes, motion_glyphs, viewers, gpu_kernels,
-          list_entries);
+          list_entries, surveys);
   archive(shader_defines);
 }
 

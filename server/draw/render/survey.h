@@ -1,0 +1,49 @@
+#pragma once
+
+#include <bitset>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "picture/picture.h"
+#include "selection/visible_depths.h"
+
+namespace surfcast::render {
+
+/// All that determines which surfaces of a model a picture shows in which pixel.
+struct ShownPart {
+  geometry::CameraFrame frame;
+  double spacing = 0;
+  geometry::Clip clip;
+  std::bitset<256> hidden_classes;
+  std::vector<std::string> hidden_models;
+
+  [[nodiscard]] bool operator==(const ShownPart& other) const;
+};
+
+/// The spacing of the survey of a picture, pixels: a small part of its surfels is drawn.
+[[nodiscard]] double survey_spacing(double spacing);
+
+/// The number of surfels above which a picture is surveyed. One surface that fills the picture needs a seventh; views
+/// of whole scans have about that, views from the ground several times more.
+[[nodiscard]] double surfels_worth_a_survey(int width, int height, double spacing);
+
+/// What the surveys of the most recent pictures of a model have found.
+class Surveys {
+ public:
+  using Depths = std::shared_ptr<const selection::VisibleDepths>;
+
+  /// Null if there is none.
+  [[nodiscard]] Depths find(const ShownPart& shown);
+  void keep(ShownPart shown, Depths depths);
+
+ private:
+  struct Survey {
+    ShownPart shown;
+    Depths depths;
+  };
+  std::list<Survey> surveys_;  ///< most recent first
+};
+
+}  // namespace surfcast::render
