@@ -56,7 +56,7 @@ Stadium stadium(double wall_density = kSparse) {
   return made;
 }
 
-surfel::SurfelCloud surfels_at(std::vector<glm::dvec3> positions, std::optional<glm::dvec3> scanner = {}) {
+surfel::SurfelCloud surfels_of_scene(std::vector<glm::dvec3> positions, std::optional<glm::dvec3> scanner = {}) {
   WholeScan scan;
   scan.positions = std::move(positions);
   scan.sensor = scanner;
@@ -75,14 +75,14 @@ double share_of(const surfel::SurfelCloud& cloud, size_t first, const std::funct
 
 TEST(SparseSheets, AWallBesideDenserSurfacesIsAWall) {
   const Stadium scene = stadium();
-  const surfel::SurfelCloud cloud = surfels_at(scene.points);
+  const surfel::SurfelCloud cloud = surfels_of_scene(scene.points);
   const auto upright = [&](size_t i) { return !cloud.is_scatter(i) && std::abs(cloud.normals[i].x) > 0.95F; };
   EXPECT_GT(share_of(cloud, scene.wall, upright), 0.8) << "0.42 by the nearest neighbours alone";
 }
 
 TEST(SparseSheets, ItsDiscsCloseTheWall) {
   const Stadium scene = stadium();
-  const surfel::SurfelCloud cloud = surfels_at(scene.points);
+  const surfel::SurfelCloud cloud = surfels_of_scene(scene.points);
   double covered = 0;
   double all = 0;
   for (double y = 5; y < kLength - 5; y += 0.5) {
@@ -104,7 +104,7 @@ TEST(SparseSheets, ItsDiscsCloseTheWall) {
 
 TEST(SparseSheets, NoDiscIsWiderThanThreeAndAHalfTimesTheRadiusAround) {
   // One point on five square metres: 3.5 times the radius around does not close this wall any more.
-  const surfel::SurfelCloud cloud = surfels_at(stadium(0.2).points);
+  const surfel::SurfelCloud cloud = surfels_of_scene(stadium(0.2).points);
   EXPECT_LT(*std::ranges::max_element(cloud.radii), 3.5F * 1.6F * static_cast<float>(kGroundRadius));
 }
 
@@ -112,8 +112,8 @@ TEST(SparseSheets, TheDenserSurfacesStayAsTheyAre) {
   const Stadium scene = stadium();
   const std::vector<glm::dvec3> without(scene.points.begin(),
                                         scene.points.begin() + static_cast<std::ptrdiff_t>(scene.wall));
-  const surfel::SurfelCloud with_wall = surfels_at(scene.points);
-  const surfel::SurfelCloud alone = surfels_at(without);
+  const surfel::SurfelCloud with_wall = surfels_of_scene(scene.points);
+  const surfel::SurfelCloud alone = surfels_of_scene(without);
   double changed = 0;
   for (size_t i = 0; i < alone.size(); ++i) {
     const bool same = with_wall.is_scatter(i) == alone.is_scatter(i) && with_wall.radii[i] < 1.2F * alone.radii[i] &&
@@ -131,14 +131,14 @@ TEST(SparseSheets, TreesAndStraysAreNoSheets) {
   // Crowns as dense as the ground, and a thin haze over all of it.
   for (const glm::dvec3& p : testing::noise(1500, 12)) points.push_back(p + glm::dvec3(10, 10, 1));
   for (const glm::dvec3& p : testing::noise(300, 60)) points.emplace_back(p.x, p.y, 0.5 + 0.3 * p.z);
-  const surfel::SurfelCloud cloud = surfels_at(points);
+  const surfel::SurfelCloud cloud = surfels_of_scene(points);
   EXPECT_LT(share_of(cloud, ground, [&](size_t i) { return !cloud.is_scatter(i); }), 0.06);
   EXPECT_LT(*std::ranges::max_element(cloud.radii), 2 * 1.6F * static_cast<float>(kGroundRadius));
 }
 
 TEST(SparseSheets, AreNotLookedForWhereTheScannerIsKnown) {
   const Stadium scene = stadium();
-  const surfel::SurfelCloud cloud = surfels_at(scene.points, glm::dvec3(30, 30, 2));
+  const surfel::SurfelCloud cloud = surfels_of_scene(scene.points, glm::dvec3(30, 30, 2));
   const auto upright = [&](size_t i) { return !cloud.is_scatter(i) && std::abs(cloud.normals[i].x) > 0.95F; };
   EXPECT_LT(share_of(cloud, scene.wall, upright), 0.6);
 }
@@ -146,7 +146,7 @@ TEST(SparseSheets, AreNotLookedForWhereTheScannerIsKnown) {
 TEST(SparseSheets, ThreadsDoNotChangeThem) {
   const auto make = [](size_t threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    return surfels_at(stadium().points);
+    return surfels_of_scene(stadium().points);
   };
   const surfel::SurfelCloud one = make(1);
   const surfel::SurfelCloud four = make(4);

@@ -248,7 +248,8 @@ std::vector<uint32_t> fill_normals(const Sites& sites, const NeighbourGraph& gra
                                    std::vector<glm::vec3> normals, bool sides, surfel::SurfelCloud& cloud,
                                    PartSigns& signs, SurfelReport& report) {
   std::vector<uint32_t> tree_of(sides ? 0 : sites.size(), kNoTree);
-  if (sides) tree_of = orient_normals({sites, graph, facts.known, facts.towards, facts.places}, normals, signs);
+  if (sides)
+    tree_of = orient_normals({sites, graph, facts.known, facts.towards, facts.places, facts.kinds}, normals, signs);
   std::vector<uint32_t> trees(cloud.size(), kNoTree);
   cloud.normals.resize(cloud.size(), glm::vec3(std::nanf("")));
   report.normals_estimated += count_own(sites, facts, [&](size_t i) {

@@ -173,7 +173,7 @@ std::vector<uint32_t> orient_normals(const SitesOfPart& part, std::vector<glm::v
   if (nothing_open) {
     for (size_t i = 0; i < normals.size(); ++i) signs.resolved_area += part.places[i].own ? area_of(part, i) : 0;
   } else {
-    tree_of = take_signs(propagate_signs(part.sites, links, normals), normals, signs);
+    tree_of = take_signs(propagate_signs(part.sites, links, normals, part.kinds), normals, signs);
     vote(part, normals, tree_of, signs);
     sample_border(part, normals, tree_of, signs);
     face_known(part, normals);

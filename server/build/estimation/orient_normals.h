@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "estimation/classify_points.h"
 #include "estimation/neighbours.h"
 #include "estimation/signed_trees.h"
 
@@ -30,6 +31,7 @@ struct SitesOfPart {
   std::span<const SiteDirection> known;
   std::span<const glm::vec3> towards;  ///< zero if unknown; empty if nothing is known
   std::span<const SitePlace> places;
+  std::span<const PointKind> kinds;  ///< empty if none is scatter
 };
 
 /// Makes the signs of normals consistent within the part (see propagate_signs.h). The sign of each tree stays open; the

@@ -49,8 +49,9 @@ double vote(const Sites& sites, std::span<const glm::vec3> normals, uint32_t a, 
 /// The initial contacts, of linked sites: every site is a piece. Their numbers are those of the links.
 class LinkContacts {
  public:
-  LinkContacts(const Sites& sites, const Links& links, std::span<const glm::vec3> normals)
-      : sites_(sites), links_(links), normals_(normals) {
+  LinkContacts(const Sites& sites, const Links& links, std::span<const glm::vec3> normals,
+               std::span<const PointKind> kinds)
+      : sites_(sites), links_(links), normals_(normals), kinds_(kinds) {
     SURFCAST_EXPECTS(links.sites() <= kMaxSites);
   }
 
@@ -74,14 +75,19 @@ class LinkContacts {
  private:
   static constexpr size_t kSites = 8192;  ///< of a chunk
 
+  [[nodiscard]] double weight(uint32_t a, uint32_t b) const {
+    constexpr double kScatter = 1.0 / 64;
+    return !kinds_.empty() && (is_scatter(kinds_[a]) || is_scatter(kinds_[b])) ? kScatter : 1;
+  }
   [[nodiscard]] Contact contact(uint32_t a, uint32_t b) const {
-    const double scaled = 0x1p32 * vote(sites_, normals_, a, b);
+    const double scaled = 0x1p32 * weight(a, b) * vote(sites_, normals_, a, b);
     return {a, b, static_cast<int64_t>(scaled + std::copysign(0.5, scaled))};
   }
 
   const Sites& sites_;
   const Links& links_;
   std::span<const glm::vec3> normals_;
+  std::span<const PointKind> kinds_;
 };
 
 /// Contacts in runs, with unused places between these. Their numbers are their places.
@@ -374,11 +380,12 @@ void follow(const std::vector<std::vector<Member>>& levels, SurfacePieces& piece
 
 }  // namespace
 
-SurfacePieces propagate_signs(const Sites& sites, const Links& links, std::span<const glm::vec3> normals) {
+SurfacePieces propagate_signs(const Sites& sites, const Links& links, std::span<const glm::vec3> normals,
+                              std::span<const PointKind> kinds) {
   SurfacePieces pieces{static_cast<uint32_t>(links.sites()), {}, {}};
   std::vector<std::vector<Member>> levels;
   // Every round at least halves the number of pieces in contact (Boruvka's algorithm).
-  const LinkContacts all(sites, links, normals);
+  const LinkContacts all(sites, links, normals, kinds);
   if (!all.empty()) {
     Round round = join(all, links.sites());
     levels.push_back(std::move(round.members));

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "estimation/classify_points.h"
 #include "estimation/links.h"
 
 namespace surfcast::estimation {
@@ -25,7 +26,10 @@ struct SurfacePieces {
 ///
 /// The vote of a link compares the components of the two normals perpendicular to the link. At sharp creases n . n' is
 /// near zero, but these components agree as clearly as at round ones. Noise on a smooth surface does not change their
-/// sign. The result is the same for any number of threads.
-SurfacePieces propagate_signs(const Sites& sites, const Links& links, std::span<const glm::vec3> normals);
+/// sign. A link of scatter, whose normals mean little, has a small part of a vote: it would tie the foot of a wall to
+/// the ground before the parts of the wall are tied to each other. `kinds`: of the sites; empty if none is scatter. The
+/// result is the same for any number of threads.
+SurfacePieces propagate_signs(const Sites& sites, const Links& links, std::span<const glm::vec3> normals,
+                              std::span<const PointKind> kinds);
 
 }  // namespace surfcast::estimation
