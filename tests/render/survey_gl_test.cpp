@@ -40,22 +40,27 @@ picture::PictureRequest view_of_street() {
 
 /// Calls with a renderer that has no blocks yet, on a thread of its own, because a thread has only one GL context.
 template <typename Action>
-auto with_renderer(bool surveys, Action action) {
+auto with_renderer(const RendererConfig& config, Action action) {
   return std::async(std::launch::async,
                     [&] {
-                      const Result<std::unique_ptr<Renderer>> renderer = Renderer::create({.surveys = surveys});
+                      const Result<std::unique_ptr<Renderer>> renderer = Renderer::create(config);
                       EXPECT_TRUE(renderer) << renderer.error().message;
                       return action(**renderer);
                     })
       .get();
 }
 
-picture::Frame draw_anew(bool surveys, const testing::ModelPointer& model, const picture::PictureRequest& request) {
-  return with_renderer(surveys, [&](Renderer& renderer) {
+picture::Frame draw_with(const RendererConfig& config, const testing::ModelPointer& model,
+                         const picture::PictureRequest& request) {
+  return with_renderer(config, [&](Renderer& renderer) {
     Result<picture::Frame> frame = renderer.draw(model, request, kNever);
     EXPECT_TRUE(frame) << frame.error().message;
     return frame ? std::move(*frame) : picture::Frame();
   });
+}
+
+picture::Frame draw_anew(bool surveys, const testing::ModelPointer& model, const picture::PictureRequest& request) {
+  return draw_with({.surveys = surveys}, model, request);
 }
 
 /// Peak signal to noise ratio, dB.
@@ -102,7 +107,7 @@ TEST_F(SurveyGLTest, AViewAtRestSharpensToThePictureOfASingleRequest) {
   const picture::Frame single = draw_anew(true, model, request);
   request.loading = picture::Loading::kNow;
   int frames = 0;
-  const picture::Frame last = with_renderer(true, [&](Renderer& renderer) {
+  const picture::Frame last = with_renderer({}, [&](Renderer& renderer) {
     for (int i = 0; i < 20'000; ++i) {
       Result<picture::Frame> frame = renderer.draw(model, request, kNever);
       EXPECT_TRUE(frame) << frame.error().message;
@@ -118,6 +123,28 @@ TEST_F(SurveyGLTest, AViewAtRestSharpensToThePictureOfASingleRequest) {
   EXPECT_GT(frames, 0);
   EXPECT_TRUE(last.converged);
   EXPECT_TRUE(last.image.pixels == single.image.pixels);
+}
+
+TEST_F(SurveyGLTest, APictureOfFewSurfelsIsSurveyedIfItIsAskedTo) {
+  const auto& model = model_of(testing::square(100, 4, {0, 0, 0}, {0, 0, 1}, {200, 120, 40}));
+  picture::PictureRequest request = view_of_street();
+  const auto programs_for = [&](bool surveyed) {
+    request.surveyed = surveyed;
+    return with_renderer({}, [&](Renderer& renderer) {
+      EXPECT_TRUE(renderer.draw(model, request, kNever));
+      return renderer.programs().size();
+    });
+  };
+  EXPECT_EQ(programs_for(true), programs_for(false) + 2) << "tiles without and with large splats";
+}
+
+TEST_F(SurveyGLTest, TheKernelsForGpusFindTheSame) {
+  const auto& model = model_of(street());
+  const picture::PictureRequest request = view_of_street();
+  const picture::Frame software = draw_anew(true, model, request);
+  const picture::Frame by_gpu_kernels = draw_with({.gpu_kernels = true}, model, request);
+  EXPECT_EQ(by_gpu_kernels.stats.blocks_drawn, software.stats.blocks_drawn);
+  EXPECT_GT(psnr(by_gpu_kernels.image, software.image), 55);
 }
 
 TEST_F(SurveyGLTest, TheFinestPictureIsNotSurveyed) {

@@ -442,6 +442,22 @@ TEST_F(SurveyTest, AViewRequestsTheBlocksOfItsSurveyAlone) {
   leaves_->release();
 }
 
+TEST_F(SurveyTest, AViewInMotionPrefetchesTheSurveyOfItsRest) {
+  residency_ = std::make_unique<Residency>(
+      sink_,
+      ResidencyLimits{
+          400, {.threads = 1, .idle_threads = 1, .cache_bytes = 4 << 20, .ready_bytes = 1 << 20}, size_t{1} << 20});
+  ViewParameters moving = surveyed_above(63'999);
+  moving.spacing = 2 * selection::projected_spacing(leaves_->tree().blocks()[0], frame_);
+  moving.moving = true;
+  moving.rest_spacing = 0;
+  const PreparedView view = residency_->prepare_resident(tree_, moving, {}, {});
+  EXPECT_FALSE(view.survey);
+  EXPECT_EQ(view.selection.target.size(), 1U) << "the root is fine enough for a motion";
+  leaves_->wait_for_start(5);
+  EXPECT_THAT(leaves_->started(), ::testing::Each(::testing::Lt(5U))) << "the root and its children alone";
+}
+
 TEST_F(SurveyTest, WhatASurveyHidesIsNotLoaded) {
   start(400);
   selection::VisibleDepths wall(frame_.width, frame_.height, 0);

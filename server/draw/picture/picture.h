@@ -59,6 +59,8 @@ struct PictureParameters {
   bool silhouettes = false;
   /// Blends all that is behind the front surface of a pixel as if it were one surface, for pictures in motion.
   bool blends_behind = false;
+  /// Surveys the picture however few surfels it has (see render/survey.h): for tests and the warm-up of shaders.
+  bool surveyed = false;
   PixelFormat format = PixelFormat::kSrgb8;
   Loading loading = Loading::kWait;
   uint64_t edition = 0;  ///< of a scan's model, see ModelSource::edition; 0: the newest

@@ -97,11 +97,14 @@ struct Part {
   [[nodiscard]] ShownPart shown() const {
     return {frame, request.spacing, request.clip, request.hidden_classes, request.hidden_models};
   }
-  /// Whether it may be surveyed: at rest, and of opaque surfaces alone.
-  [[nodiscard]] bool may_be_surveyed() const {
-    return scene.has_surfaces() && !scene.mixed() && !display.through.any && !window && request.viewer == 0 &&
-           !picture::has_budget(request) && request.spacing > 0 && request.filter == picture::Filter::kEwa &&
-           request.normalization == picture::Normalization::kPixel;
+  /// Whether it shows opaque surfaces alone, to a spacing: such pictures may be surveyed.
+  [[nodiscard]] bool may_hide_blocks() const {
+    return scene.has_surfaces() && !scene.mixed() && !display.through.any && !window &&
+           request.filter == picture::Filter::kEwa && !picture::has_budget(request) &&
+           request.rest_spacing.value_or(request.spacing) > 0;
+  }
+  [[nodiscard]] bool is_at_rest() const {
+    return request.viewer == 0 && request.normalization == picture::Normalization::kPixel;
   }
 };
 
@@ -262,12 +265,13 @@ Result<residency::PreparedView> Renderer::State::prepare(const Part& part) {
     parameters.most_items = most_glyphs(request, motion_glyphs);
   }
   Surveys::Depths visible;  // lives as long as the preparation, in which another picture may be drawn
-  if (surveys && part.may_be_surveyed()) {
-    visible = scene.surveys().find(part.shown());
+  if (surveys && part.may_hide_blocks()) {
+    if (part.is_at_rest()) visible = scene.surveys().find(part.shown());
+    const double spacing = request.rest_spacing.value_or(request.spacing);
     parameters.visible = visible.get();
-    if (!visible) {
-      parameters.survey = {surfels_worth_a_survey(request.width, request.height, request.spacing),
-                           survey_spacing(request.spacing)};
+    if (!visible && (part.is_at_rest() || request.rest_spacing)) {
+      const double worth = surfels_worth_a_survey(request.width, request.height, spacing);
+      parameters.survey = {request.surveyed ? 0 : worth, survey_spacing(spacing)};
     }
   }
   if (request.loading == picture::Loading::kWait)

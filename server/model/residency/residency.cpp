@@ -45,11 +45,12 @@ selection::BlockSelection Residency::select(const ViewedModel& model, const View
                                   was_refined);
 }
 
-/// Selects the blocks of a picture or of its survey. `parameters` become those of what is selected.
+/// Selects the blocks of a picture or of its survey; pictures in motion have none. `parameters` become those of what is
+/// selected.
 selection::BlockSelection Residency::select_or_survey(const ViewedModel& model, ViewParameters& parameters,
                                                       std::span<const uint32_t> was_refined, PreparedView& view) const {
   selection::BlockSelection selection = select(model, parameters, was_refined);
-  if (!parameters.survey) return selection;
+  if (!parameters.survey || parameters.moving) return selection;
   if (surfels_at_spacing(model, parameters, selection.target) <= parameters.survey->surfels) return selection;
   view.survey = true;
   parameters.spacing = parameters.survey->spacing;
@@ -213,8 +214,8 @@ void Residency::add_requests_ahead(const ViewedModel& model, const ViewParameter
   add(model, select(model, ahead_parameters, selection.refined).wanted, blocks);
 }
 
-/// Prefetches the blocks of the view at rest. The camera may stop at any time, and a view at rest needs many more
-/// blocks than one in motion.
+/// Prefetches the blocks of the view at rest, or of its survey. The camera may stop at any time, and a view at rest
+/// needs many more blocks than one in motion.
 void Residency::prefetch_rest(const ViewedModel& model, const ViewParameters& parameters) {
   constexpr double kEveryMs = 150;  // minimum interval: the selection is too slow for every motion frame
   if (!parameters.rest_spacing) return loader_.prefetch(model.source, {}, parameters.attributes);
@@ -225,7 +226,9 @@ void Residency::prefetch_rest(const ViewedModel& model, const ViewParameters& pa
   rest.moving = false;
   rest.items = nullptr;
   std::vector<uint32_t> blocks;
-  add(model, blocks_to_load(rest, select(model, rest, {})), blocks);
+  PreparedView view;  // only the selection matters
+  const selection::BlockSelection selection = select_or_survey(model, rest, {}, view);
+  add(model, blocks_to_load(rest, selection), blocks);
   loader_.prefetch(model.source, blocks, parameters.attributes);
 }
 

@@ -45,7 +45,7 @@ struct ViewParameters {
     double surfels = 0;  ///< if more of them would be drawn
     double spacing = 0;  ///< see SelectionCriteria
   };
-  std::optional<Survey> survey{};
+  std::optional<Survey> survey{};  ///< of a view in motion: of the picture at rest
 };
 
 /// The blocks that a picture is drawn from, and the cost of making them resident.

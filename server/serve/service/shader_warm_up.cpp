@@ -29,7 +29,10 @@ std::vector<picture::PictureRequest> shader_warm_up_requests(const model::ModelF
   plain.spacing = 1e6;  // the coarsest blocks
   plain.silhouettes = true;
   std::vector<picture::PictureRequest> pictures;
-  add_both(with_first_look(plain, info), pictures);
+  const picture::PictureRequest first = with_first_look(plain, info);
+  add_both(first, pictures);
+  pictures.push_back(first);
+  pictures.back().surveyed = true;
   if (!model.ellipsoid_sources().empty()) {
     picture::PictureRequest superquadrics = plain;
     superquadrics.glyphs.shape = picture::GlyphShape::kSuperquadric;

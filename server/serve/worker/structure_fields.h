@@ -145,10 +145,10 @@ void fields(Archive& archive, T& value) {
 
 template <typename Archive, worker::Is<PictureParameters> T>
 void fields(Archive& archive, T& value) {
-  auto& [camera, width, height, silhouettes, blends_behind, format, loading, edition, viewer, rest_spacing,
+  auto& [camera, width, height, silhouettes, blends_behind, surveyed, format, loading, edition, viewer, rest_spacing,
          displayed_cut, max_missing_blocks, coloring, hidden_classes, clip, eye_dome, volumes, glyphs, lighting,
          class_opacities, hidden_models, depth_texels] = value;
-  archive(camera, width, height, silhouettes, blends_behind, format, loading, edition, viewer, rest_spacing);
+  archive(camera, width, height, silhouettes, blends_behind, surveyed, format, loading, edition, viewer, rest_spacing);
   archive(displayed_cut, max_missing_blocks, coloring, hidden_classes, clip, eye_dome, volumes, glyphs, lighting);
   archive(class_opacities, hidden_models, depth_texels);
 }
