@@ -394,7 +394,7 @@ Result<RegionStats> Renderer::State::draw_survey(const Part& part, residency::Pr
   result.image.pixels.resize(pixels * pixel_bytes(request.format));
   const auto depths =
       std::make_shared<selection::VisibleDepths>(request.width, request.height, survey_spacing(request.spacing));
-  const Result<RegionStats> drawn = draw_regions(part, view, depths.get(), result);
+  Result<RegionStats> drawn = draw_regions(part, view, depths.get(), result);
   if (!drawn) return drawn;
   part.scene.surveys().keep(part.shown(), depths);
   Result<residency::PreparedView> next = prepare(part);
