@@ -75,6 +75,7 @@ class LinkContacts {
  private:
   static constexpr size_t kSites = 8192;  ///< of a chunk
 
+  /// The best of 1, 1/16, 1/64 and 1/1024 for walls (docs/laboratory.md, "Signs at the feet of walls").
   [[nodiscard]] double weight(uint32_t a, uint32_t b) const {
     constexpr double kScatter = 1.0 / 64;
     return !kinds_.empty() && (is_scatter(kinds_[a]) || is_scatter(kinds_[b])) ? kScatter : 1;

@@ -83,10 +83,9 @@ struct BlockSelection {
 ///   exceed the budgets.
 /// - Visibility: a block of which nothing is seen is not refined. If it is seen in less than a fifth of its pixels, its
 ///   projected spacing counts as smaller by the root of this ratio.
-/// - Hysteresis: `was_refined` is `refined` of the previous picture, or empty. A refined block stays refined while it
-/// is
-///   hidden, and until its projected spacing is a fifth below the requested one. Small camera motions then do not
-///   switch levels back and forth. The requested spacing is still reached, because hysteresis only delays coarsening.
+/// - Hysteresis: `was_refined` is `refined` of the previous picture, or empty. A refined block stays refined until its
+///   projected spacing is a fifth below the requested one. Small camera motions then do not switch levels back and
+///   forth. The requested spacing is still reached, because hysteresis only delays coarsening.
 /// - Stand-ins: if a block of the target is not resident, its nearest resident ancestor stands in for it and all
 ///   its siblings. If the view just became coarser and the budgets allow, its resident descendants stand in instead.
 ///
