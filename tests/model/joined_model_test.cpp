@@ -5,6 +5,7 @@
 #include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -70,6 +71,15 @@ TEST(JoinedModel, IsTheForestOfItsMembers) {
     expect_same_points(*block, *part.model.decode(part.block));
     EXPECT_EQ(block->colors, part.model.decode(part.block)->colors);
   }
+}
+
+TEST(JoinedModel, BlocksOfDifferentMembersAreNotMadeTogether) {
+  const TestFolder folder;
+  const ModelFile model = joined({{"a", sphere(folder, "a", sphere_cloud(20000))},
+                                  {"b", sphere(folder, "b", moved(sphere_cloud(30000), {3, 0, 0}))}});
+  std::set<uint64_t> units;
+  for (uint32_t i = 0; i < model.blocks().size(); ++i) units.insert(model.unit_of(i));
+  EXPECT_EQ(units.size(), model.blocks().size());
 }
 
 TEST(JoinedModel, HasThePropertiesOfAllItsMembers) {

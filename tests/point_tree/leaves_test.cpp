@@ -74,6 +74,23 @@ TEST(PointTreeLeaves, HaveEveryPointOnceWhereNodesHaveMoreThanABlockHolds) {
   expect_leaves_have_every_point_once(shape);
 }
 
+/// All blocks of a node share its estimation.
+TEST(PointTreeLeaves, BlocksOfANodeAreMadeTogether) {
+  CopcShape shape;
+  shape.levels = 2;
+  shape.node_points = 50'000;
+  const std::string content = copc_file(shape);
+  const Result<model::ModelFile> model = open_in_place(TreeFormat::kCopc, source_of(content), nullptr, {}, nullptr);
+  ASSERT_TRUE(model) << model.error().message;
+  std::map<uint64_t, std::vector<ldc::OctreeKey>> cells;
+  for (uint32_t i = 0; i < model->blocks().size(); ++i) cells[model->unit_of(i)].push_back(model->blocks()[i].key);
+  EXPECT_LT(cells.size(), model->blocks().size());
+  for (const auto& [unit, keys] : cells) {
+    const bool leaves = std::ranges::all_of(keys, [&](const ldc::OctreeKey& key) { return key == keys.front(); });
+    EXPECT_TRUE(unit == 0 || leaves) << unit;
+  }
+}
+
 TEST(PointTreeLeaves, BlocksAreWithinWhatTheirEntriesState) {
   CopcShape shape;
   shape.levels = 4;

@@ -197,6 +197,26 @@ TEST(BlockLoader, WorkersWaitWhenNobodyTakesWhatIsReady) {
   source->wait_for_start(4);
 }
 
+/// The second of two workers would only wait for the first.
+TEST(BlockLoader, WorkersDoNotLoadBlocksThatAreMadeTogether) {
+  const auto source = std::make_shared<FakeBlocks>(1, many_blocks(100));
+  source->make_together(4);
+  source->hold();
+  BlockLoader loader({.threads = 2, .cache_bytes = 0, .ready_bytes = size_t{1} << 20});
+  loader.set_requests(source, std::vector<uint32_t>{0, 1, 2, 3, 8, 9});
+  source->wait_for_start(2);
+  EXPECT_THAT(source->started(), UnorderedElementsAre(0, 8));
+  source->release();
+  std::vector<uint32_t> taken;
+  while (taken.size() < 6) {
+    loader.wait(std::chrono::seconds(10));
+    const std::optional<LoadedBlock> loaded = loader.take();
+    ASSERT_TRUE(loaded);
+    taken.push_back(loaded->id.block);
+  }
+  EXPECT_THAT(taken, UnorderedElementsAre(0, 1, 2, 3, 8, 9));
+}
+
 TEST(BlockLoader, EndsWithRequestsOutstanding) {
   const auto source = std::make_shared<FakeBlocks>(1, many_blocks(100));
   BlockLoader loader({.threads = 3, .cache_bytes = 0, .ready_bytes = 16000});

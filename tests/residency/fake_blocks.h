@@ -40,6 +40,10 @@ class FakeBlocks : public residency::BlockSource {
     return packed;
   }
 
+  [[nodiscard]] uint64_t unit_of(uint32_t block) const override { return block / unit_; }
+  /// From now on so many blocks are made together. Must be called before the blocks are given to a loader.
+  void make_together(uint32_t blocks) { unit_ = blocks; }
+
   void damage(uint32_t block) { damaged_.insert(block); }
   /// From now on load() does not return until release().
   void hold() { set_held(true); }
@@ -77,6 +81,7 @@ class FakeBlocks : public residency::BlockSource {
   mutable std::vector<uint32_t> prefetched_;
   mutable std::vector<uint32_t> forgotten_;
   bool held_ = false;
+  uint32_t unit_ = 1;
 };
 
 /// Stores the texels that a pool writes.

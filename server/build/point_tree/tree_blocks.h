@@ -101,6 +101,8 @@ class TreeBlocks : public model::BlockProvider {
 
   void prefetch(std::span<const uint32_t> blocks) const override;
   void forget(size_t block) const override;
+  /// The node: its blocks are made together.
+  [[nodiscard]] uint64_t unit_of(uint32_t block) const override { return frame_.table.plans[block].node; }
   [[nodiscard]] Result<model::StoredBlock> stored(size_t block) const override;
   [[nodiscard]] Result<model::DecodedBlock> decode(size_t block, model::WantedScalars scalars) const override;
   [[nodiscard]] std::span<const model::ScalarColumn> scalars() const override { return columns_; }

@@ -22,6 +22,7 @@ class FileBlocks : public residency::BlockSource {
   [[nodiscard]] const ldc::BlockTree& tree() const override { return tree_ ? *tree_ : model_->tree(); }
   void prefetch(std::span<const uint32_t> blocks) const override { model_->prefetch(blocks); }
   void forget(uint32_t block) const override { model_->forget(block); }
+  [[nodiscard]] uint64_t unit_of(uint32_t block) const override { return model_->unit_of(block); }
   [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override;
   /// The number of a block's kind in the table of kinds.
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return numbers_[model_->blocks()[block].kind]; }

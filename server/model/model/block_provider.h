@@ -22,6 +22,7 @@ class BlockProvider {
   /// See ModelFile.
   virtual void prefetch(std::span<const uint32_t> blocks) const = 0;
   virtual void forget(size_t block) const = 0;
+  [[nodiscard]] virtual uint64_t unit_of(uint32_t block) const { return block; }
   [[nodiscard]] virtual Result<StoredBlock> stored(size_t block) const = 0;
   /// Of a block of surfels.
   [[nodiscard]] virtual Result<DecodedBlock> decode(size_t block, WantedScalars scalars) const = 0;

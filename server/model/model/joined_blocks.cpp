@@ -89,6 +89,15 @@ void JoinedBlocks::forget(size_t block) const {
   }
 }
 
+uint64_t JoinedBlocks::unit_of(uint32_t block) const {
+  constexpr int kMemberShift = 48;  // members are few, and units of one are numbers of its blocks or nodes
+  const BlockOrigin& origin = parts_->origins[block];
+  const bool shared = origin.member == BlockOrigin::kShared;
+  const uint64_t own = shared ? block : parts_->members[origin.member].model->unit_of(origin.index);
+  const uint64_t member = shared ? parts_->members.size() : origin.member;
+  return member << kMemberShift | own;
+}
+
 Result<StoredBlock> JoinedBlocks::stored(size_t block) const {
   const BlockOrigin& origin = parts_->origins[block];
   if (origin.member == BlockOrigin::kShared) {

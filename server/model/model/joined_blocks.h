@@ -22,6 +22,7 @@ class JoinedBlocks : public BlockProvider {
 
   void prefetch(std::span<const uint32_t> blocks) const override;
   void forget(size_t block) const override;
+  [[nodiscard]] uint64_t unit_of(uint32_t block) const override;
   [[nodiscard]] Result<StoredBlock> stored(size_t block) const override;
   [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars) const override;
   [[nodiscard]] std::span<const ScalarColumn> scalars() const override { return scalars_; }

@@ -269,6 +269,10 @@ void ModelFile::forget(size_t block) const {
   state_->provider->forget(block);
 }
 
+uint64_t ModelFile::unit_of(uint32_t block) const {
+  return state_->provider->unit_of(block);
+}
+
 Result<Georeference> ModelFile::georeference() const {
   return state_->provider->georeference();
 }

@@ -117,6 +117,8 @@ class ModelFile {
   void prefetch(std::span<const uint32_t> blocks) const;
   /// A block that was prefetched will not be decoded.
   void forget(size_t block) const;
+  /// The same for blocks that are made together: decoding one of them makes all.
+  [[nodiscard]] uint64_t unit_of(uint32_t block) const;
   /// The bytes of a block of any kind. Fails if their checksum is wrong. Of a joined model, those of the member.
   [[nodiscard]] Result<StoredBlock> stored(size_t block) const;
   /// The volumes whose bricks are blocks of the kind "grid"; none in most models.

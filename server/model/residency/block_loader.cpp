@@ -174,18 +174,37 @@ LoadedBlock BlockLoader::load(const Request& request, std::unique_lock<std::mute
   return loaded;
 }
 
+BlockLoader::Unit BlockLoader::unit_of(const Request& request) {
+  return {request.id.model, request.source->unit_of(request.id.block)};
+}
+
+/// The first request for which no worker would wait for another one.
+std::deque<BlockLoader::Request>::iterator BlockLoader::next_request() {
+  return std::ranges::find_if(queue_,
+                              [this](const Request& request) { return !busy_units_.contains(unit_of(request)); });
+}
+
 void BlockLoader::work() {
   std::unique_lock lock(mutex_);
   while (true) {
-    wake_workers_.wait(lock, [this] { return stopping_ || (!queue_.empty() && ready_bytes_ < limits_.ready_bytes); });
+    std::deque<Request>::iterator next;
+    wake_workers_.wait(lock, [&] {
+      if (stopping_) return true;
+      next = next_request();
+      return next != queue_.end() && ready_bytes_ < limits_.ready_bytes;
+    });
     if (stopping_) return;
-    const Request request = std::move(queue_.front());
-    queue_.pop_front();
+    const Request request = std::move(*next);
+    queue_.erase(next);
+    const Unit unit = unit_of(request);
     busy_.insert(request.id);
+    busy_units_.insert(unit);
     LoadedBlock loaded = load(request, lock);
     busy_.erase(request.id);
+    busy_units_.erase(unit);
     finish(std::move(loaded));
     wake_taker_.notify_one();
+    wake_workers_.notify_all();  // others of the unit
   }
 }
 

@@ -61,7 +61,10 @@ class BlockLoader {
     std::shared_ptr<const BlockSource> source;
     BlockId id;
   };
+  using Unit = std::pair<uint64_t, uint64_t>;  ///< of a model; see BlockSource::unit_of
 
+  [[nodiscard]] static Unit unit_of(const Request& request);
+  [[nodiscard]] std::deque<Request>::iterator next_request();
   void work();
   void work_on_prefetches();
   [[nodiscard]] LoadedBlock load(const Request& request, std::unique_lock<std::mutex>& lock);
@@ -83,6 +86,7 @@ class BlockLoader {
   std::set<BlockId> damaged_prefetches_;
   std::set<BlockId> requested_;  ///< requests whose blocks have not been taken
   std::set<BlockId> busy_;       ///< requested blocks being decoded
+  std::set<Unit> busy_units_;    ///< of these
   std::deque<LoadedBlock> ready_;
   size_t ready_bytes_ = 0;
   LruCache<BlockId, PackedBlock> cache_;

@@ -24,6 +24,9 @@ class BlockSource {
   virtual void prefetch(std::span<const uint32_t> blocks) const = 0;
   /// A block that was announced will not be loaded.
   virtual void forget(uint32_t block) const = 0;
+  /// Blocks with the same unit are made by the loading of any of them: two threads that load them at the same time do
+  /// the work of one.
+  [[nodiscard]] virtual uint64_t unit_of(uint32_t block) const { return block; }
   /// Reads, decodes and packs a block, with or without PackedBlock::attributes.
   [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block, bool attributes) const = 0;
 };
