@@ -1,5 +1,11 @@
 #include "residency/residency.h"
 
+#include <atomic>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -463,11 +469,55 @@ TEST_F(SurveyTest, WhatASurveyHidesIsNotLoaded) {
   selection::VisibleDepths wall(frame_.width, frame_.height, 0);
   const std::vector<selection::DepthRange> near(static_cast<size_t>(frame_.width), {1, 1});
   for (int y = 0; y < frame_.height; ++y) wall.enter(0, y, near);
-  const Result<PreparedView> view = residency_->prepare_complete(tree_, {.frame = frame_, .visible = &wall}, never_);
+  const selection::Visibility visible(std::move(wall), frame_, std::numeric_limits<double>::infinity());
+  const Result<PreparedView> view = residency_->prepare_complete(tree_, {.frame = frame_, .visible = &visible}, never_);
   ASSERT_TRUE(view);
   EXPECT_FALSE(view->survey);
   EXPECT_THAT(view->selection.draw, ElementsAre(0));
   EXPECT_THAT(leaves_->started(), ElementsAre(0));
+}
+
+/// Blocks whose header tells one centre: the number of the block.
+class CentredBlocks : public FakeBlocks {
+ public:
+  using FakeBlocks::FakeBlocks;
+  [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
+    return FakeBlocks::load(block, attributes).map([](PackedBlock packed) {
+      packed.header = std::make_shared<const Header>();
+      return packed;
+    });
+  }
+
+ private:
+  class Header : public BlockHeader {
+   public:
+    [[nodiscard]] glm::vec4 scale(int /*unit*/) const override { return {}; }
+    void add_runs(const selection::RadiusRange& /*wanted*/, std::vector<TexelRun>& /*runs*/) const override {}
+    void add_centres(const PackedBlock& block, std::vector<glm::dvec3>& centres) const override {
+      centres.emplace_back(block.texels.front().x);
+    }
+  };
+};
+
+TEST(ResidencyCentres, AreThoseOfABlockInHostMemoryOrLoadedAgain) {
+  const auto source = std::make_shared<CentredBlocks>(
+      1, std::vector<ldc::BlockEntry>{testing::block_at({0, 0, -10}, 1), testing::block_at({5, 0, -10}, 1)});
+  const ViewedModel model(source);
+  testing::FakeSink sink;
+  Residency residency(
+      sink, ResidencyLimits{400, {.threads = 1, .cache_bytes = 4 << 20, .ready_bytes = 1 << 20}, size_t{1} << 20});
+  const Result<std::vector<glm::dvec3>> loaded = residency.centres(model, 1, false);
+  ASSERT_TRUE(loaded);
+  EXPECT_THAT(*loaded, ElementsAre(glm::dvec3(1)));
+  EXPECT_THAT(source->started(), ElementsAre(1));
+  const std::atomic<bool> never{false};
+  ASSERT_TRUE(residency.prepare_complete(model, {.frame = testing::view_from({0, 0, 0})}, never));
+  const size_t before = source->started().size();
+  EXPECT_THAT(*residency.centres(model, 1, false), ElementsAre(glm::dvec3(1)));
+  EXPECT_EQ(source->started().size(), before);
+  source->damage(0);
+  EXPECT_TRUE(residency.centres(model, 0, false)) << "in host memory";
+  EXPECT_FALSE(residency.centres(model, 0, true)) << "with attributes it is not";
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "selection/select_blocks.h"
 
+#include <limits>
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -408,13 +411,16 @@ TEST(SelectBlocks, AWindowNeedsTheBlocksOfTheWholePictureThatMayBeSeenInIt) {
   }
 }
 
+/// Coarser than any block.
+constexpr double kAnySpacing = std::numeric_limits<double>::infinity();
+
 /// All of the view shows a wall at a depth of 12, but for columns that show the depths of the tree of two_splits().
-VisibleDepths wall_but_for(const geometry::CameraFrame& frame, int first, int last) {
+Visibility wall_but_for(const geometry::CameraFrame& frame, int first, int last, double spacing = kAnySpacing) {
   VisibleDepths depths(frame.width, frame.height, 0);
   std::vector<DepthRange> row(static_cast<size_t>(frame.width), DepthRange{1 / 12.0F, 1 / 12.0F});
   std::fill(row.begin() + first, row.begin() + last, DepthRange{1 / 20.0F, 1 / 20.0F});
   for (int y = 0; y < frame.height; ++y) depths.enter(0, y, row);
-  return depths;
+  return {std::move(depths), frame, spacing};
 }
 
 TEST(SelectBlocks, WhatIsNotSeenIsNotRefined) {
@@ -422,9 +428,9 @@ TEST(SelectBlocks, WhatIsNotSeenIsNotRefined) {
   const SelectionTree tree(blocks);
   const geometry::CameraFrame frame = view_from({0, 0, 0});
   // The children 1 to 4 of the root stand from left to right. The columns from 56 on are those of 3 and 4.
-  const VisibleDepths depths = wall_but_for(frame, 56, 100);
+  const Visibility visible = wall_but_for(frame, 56, 100);
   SelectionCriteria criteria;
-  criteria.visible = &depths;
+  criteria.visible = &visible;
   const BlockSelection selection = select_blocks(tree, frame, criteria, all_of(blocks));
   EXPECT_THAT(selection.refined, ElementsAre(0, 3, 4));
   EXPECT_TRUE(std::ranges::binary_search(selection.draw, 1U)) << "hidden, and drawn where it is";
@@ -439,9 +445,9 @@ TEST(SelectBlocks, WhatIsHardlySeenMayBeCoarser) {
   const SelectionTree tree(blocks);
   const geometry::CameraFrame frame = view_from({0, 0, 0});
   // About a tenth of the pixels of child 2.
-  const VisibleDepths depths = wall_but_for(frame, 49, 50);
+  const Visibility visible = wall_but_for(frame, 49, 50);
   SelectionCriteria criteria;
-  criteria.visible = &depths;
+  criteria.visible = &visible;
   criteria.spacing = 0.9 * projected_spacing(blocks.blocks()[2], frame);
   const auto is_refined = [&] {
     const BlockSelection selection = select_blocks(tree, frame, criteria, all_of(blocks));
@@ -450,16 +456,61 @@ TEST(SelectBlocks, WhatIsHardlySeenMayBeCoarser) {
   EXPECT_FALSE(is_refined());
   criteria.visible = nullptr;
   EXPECT_TRUE(is_refined());
-  criteria.visible = &depths;
+  criteria.visible = &visible;
   criteria.spacing *= 0.5;
   EXPECT_TRUE(is_refined());
+}
+
+TEST(SelectBlocks, WhatIsHiddenIsAsFineAsTheCoarsePicture) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  SelectionCriteria criteria;
+  criteria.spacing = 0.5 * projected_spacing(blocks.blocks()[1], frame);
+  const auto refined_with = [&](double spacing) {
+    const Visibility visible = wall_but_for(frame, 0, 0, spacing);  // hides all
+    criteria.visible = &visible;
+    return select_blocks(tree, frame, criteria, all_of(blocks)).refined;
+  };
+  EXPECT_THAT(refined_with(1.5 * projected_spacing(blocks.blocks()[0], frame)), ElementsAre());
+  EXPECT_THAT(refined_with(1.5 * projected_spacing(blocks.blocks()[1], frame)), ElementsAre(0));
+}
+
+/// The boxes are seen, but of the surfels of the root only those in child 3.
+TEST(SelectBlocks, WhatHasNoSurfelThatIsSeenIsNotRefined) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  const geometry::Box& shown = tree.hulls[3].centres;
+  VisibleDepths depths(frame.width, frame.height, 0);
+  const int first = static_cast<int>(frame.project(frame.to_camera({shown.min.x, 0, -20})).x);
+  const int last = static_cast<int>(frame.project(frame.to_camera({shown.max.x, 0, -20})).x);
+  std::vector<DepthRange> row(static_cast<size_t>(frame.width), DepthRange{1 / 12.0F, 1 / 12.0F});
+  std::fill(row.begin() + first, row.begin() + last + 1, DepthRange{1 / 20.0F, 1 / 20.0F});
+  for (int y = 0; y < frame.height; ++y) {
+    // The upper half of the picture shows the depths of all blocks.
+    const bool upper = y < frame.height / 2;
+    const std::vector<DepthRange> far(row.size(), DepthRange{1 / 20.0F, 1 / 20.0F});
+    depths.enter(0, y, upper ? far : row);
+  }
+  Visibility visible(std::move(depths), frame, kAnySpacing);
+  std::vector<glm::dvec3> centres;
+  for (uint32_t child = 1; child <= 4; ++child) {
+    for (int i = 0; i < 50; ++i) centres.push_back(tree.hulls[child].centres.centre() - glm::dvec3(0, 0.01 * i, 0));
+  }
+  SelectionCriteria criteria;
+  criteria.spacing = 0.5 * projected_spacing(blocks.blocks()[1], frame);
+  criteria.visible = &visible;
+  EXPECT_THAT(select_blocks(tree, frame, criteria, all_of(blocks)).refined, ElementsAre(0, 1, 2, 3, 4));
+  visible.enter(0, centres);
+  EXPECT_THAT(select_blocks(tree, frame, criteria, all_of(blocks)).refined, ElementsAre(0, 3));
 }
 
 TEST(SelectBlocks, WhatIsHiddenLeavesTheBudgetToWhatIsSeen) {
   const ldc::BlockTree blocks = two_splits();
   const SelectionTree tree(blocks);
   const geometry::CameraFrame frame = view_from({0, 0, 0});
-  const VisibleDepths depths = wall_but_for(frame, 56, 100);
+  const Visibility visible = wall_but_for(frame, 56, 100);
   SelectionCriteria criteria;
   criteria.surfels = 10'000;
   const auto finest_on_the_right = [&] {
@@ -467,7 +518,7 @@ TEST(SelectBlocks, WhatIsHiddenLeavesTheBudgetToWhatIsSeen) {
     return std::ranges::count_if(selection.draw, [&](uint32_t block) { return block >= 13; });
   };
   EXPECT_LT(finest_on_the_right(), 8) << "leaves below the children 3 and 4";
-  criteria.visible = &depths;
+  criteria.visible = &visible;
   EXPECT_EQ(finest_on_the_right(), 8);
 }
 

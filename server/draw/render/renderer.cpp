@@ -264,7 +264,7 @@ Result<residency::PreparedView> Renderer::State::prepare(const Part& part) {
     parameters.items = &scene.glyphs();
     parameters.most_items = most_glyphs(request, motion_glyphs);
   }
-  Surveys::Depths visible;  // lives as long as the preparation, in which another picture may be drawn
+  Surveys::Found visible;  // lives as long as the preparation, in which another picture may be drawn
   if (surveys && part.may_hide_blocks()) {
     if (part.is_at_rest()) visible = scene.surveys().find(part.shown());
     const double spacing = request.rest_spacing.value_or(request.spacing);
@@ -392,11 +392,17 @@ Result<RegionStats> Renderer::State::draw_survey(const Part& part, residency::Pr
   const picture::PictureRequest& request = part.request;
   const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
   result.image.pixels.resize(pixels * pixel_bytes(request.format));
-  const auto depths =
-      std::make_shared<selection::VisibleDepths>(request.width, request.height, survey_spacing(request.spacing));
-  Result<RegionStats> drawn = draw_regions(part, view, depths.get(), result);
+  const double spacing = survey_spacing(request.spacing);
+  selection::VisibleDepths depths(request.width, request.height, spacing);
+  Result<RegionStats> drawn = draw_regions(part, view, &depths, result);
   if (!drawn) return drawn;
-  part.scene.surveys().keep(part.shown(), depths);
+  const auto visible = std::make_shared<selection::Visibility>(std::move(depths), part.frame, spacing);
+  for (const uint32_t block : view.selection.draw) {
+    const auto centres = residency.centres(part.scene.viewed(), block, part.display.attributes);
+    if (!centres) return fail(centres);
+    visible->enter(block, *centres);
+  }
+  part.scene.surveys().keep(part.shown(), visible);
   Result<residency::PreparedView> next = prepare(part);
   if (!next) return fail(next);
   if (next->missing > 0) {

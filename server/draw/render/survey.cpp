@@ -34,17 +34,17 @@ double surfels_worth_a_survey(int width, int height, double spacing) {
   return kLayers * width * height / (spacing * spacing);
 }
 
-Surveys::Depths Surveys::find(const ShownPart& shown) {
+Surveys::Found Surveys::find(const ShownPart& shown) {
   const auto found = std::ranges::find(surveys_, shown, &Survey::shown);
   if (found == surveys_.end()) return nullptr;
   surveys_.splice(surveys_.begin(), surveys_, found);
-  return found->depths;
+  return found->visible;
 }
 
-void Surveys::keep(ShownPart shown, Depths depths) {
+void Surveys::keep(ShownPart shown, Found visible) {
   constexpr size_t kMost = 4;  // views that sharpen at the same time
   if (surveys_.size() == kMost) surveys_.pop_back();
-  surveys_.push_front({std::move(shown), std::move(depths)});
+  surveys_.push_front({std::move(shown), std::move(visible)});
 }
 
 }  // namespace surfcast::render

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "picture/picture.h"
-#include "selection/visible_depths.h"
+#include "selection/visibility.h"
 
 namespace surfcast::render {
 
@@ -32,16 +32,16 @@ struct ShownPart {
 /// What the surveys of the most recent pictures of a model have found.
 class Surveys {
  public:
-  using Depths = std::shared_ptr<const selection::VisibleDepths>;
+  using Found = std::shared_ptr<const selection::Visibility>;
 
   /// Null if there is none.
-  [[nodiscard]] Depths find(const ShownPart& shown);
-  void keep(ShownPart shown, Depths depths);
+  [[nodiscard]] Found find(const ShownPart& shown);
+  void keep(ShownPart shown, Found visible);
 
  private:
   struct Survey {
     ShownPart shown;
-    Depths depths;
+    Found visible;
   };
   std::list<Survey> surveys_;  ///< most recent first
 };

@@ -49,6 +49,15 @@ class SurfelHeader : public residency::BlockHeader {
     }
   }
 
+  void add_centres(const residency::PackedBlock& block, std::vector<glm::dvec3>& centres) const override {
+    const size_t each = (flags_ & SURFCAST_RUN_CURVED) != 0 ? 2 : 1;
+    centres.reserve(centres.size() + block.texels.size() / each);
+    for (size_t i = 0; i < block.texels.size(); i += each) {
+      const glm::uvec3 code = glm::uvec3(block.texels[i]) & glm::uvec3(SURFCAST_POSITION_MASK);
+      centres.push_back(block.lattice.position(code));
+    }
+  }
+
  private:
   residency::LogScale radius_;
   residency::LogScale weight_;

@@ -158,6 +158,11 @@ void BlockLoader::wait(std::chrono::milliseconds most) {
   wake_taker_.wait_for(lock, most, [this] { return !ready_.empty(); });
 }
 
+std::shared_ptr<const PackedBlock> BlockLoader::find(const BlockId& id) {
+  const std::lock_guard lock(mutex_);
+  return cache_.find(id);
+}
+
 void BlockLoader::release_model(uint64_t model) {
   const std::lock_guard lock(mutex_);
   cache_.erase_range({model, 0}, {model + 1, 0});

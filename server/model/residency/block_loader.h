@@ -54,6 +54,8 @@ class BlockLoader {
   std::optional<LoadedBlock> take(std::optional<uint64_t> model = std::nullopt);
   /// Waits until take() would return a block, at most this long.
   void wait(std::chrono::milliseconds most);
+  /// A block in host memory; null if it is not there.
+  [[nodiscard]] std::shared_ptr<const PackedBlock> find(const BlockId& id);
   void release_model(uint64_t model);
 
  private:

@@ -38,6 +38,8 @@ struct TexelRun {
   uint32_t flags = 0;  ///< parameters for the projection, in the bits above SURFCAST_RUN_COUNT
 };
 
+struct PackedBlock;
+
 /// Parameters of a block for the projection of its kind: the scale of its texels, and the runs of texels to project.
 /// There is one header per block. It is immutable and made by the kind when it packs the block.
 class BlockHeader {
@@ -47,6 +49,8 @@ class BlockHeader {
   [[nodiscard]] virtual glm::vec4 scale(int unit) const = 0;
   /// Appends the runs of texels that may be visible in a picture that requests radii in this range.
   virtual void add_runs(const selection::RadiusRange& wanted, std::vector<TexelRun>& runs) const = 0;
+  /// Appends the centres of the items, or of some of them, world units; none by default. `block`: that of the header.
+  virtual void add_centres(const PackedBlock& block, std::vector<glm::dvec3>& centres) const;
 };
 
 /// The largest number of texels of a block per item.
@@ -65,5 +69,7 @@ struct PackedBlock {
     return texels.size() * sizeof(glm::uvec4) + attributes.size() * sizeof(uint32_t);
   }
 };
+
+inline void BlockHeader::add_centres(const PackedBlock& /*block*/, std::vector<glm::dvec3>& /*centres*/) const {}
 
 }  // namespace surfcast::residency

@@ -155,6 +155,16 @@ Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const
   return view;
 }
 
+Result<std::vector<glm::dvec3>> Residency::centres(const ViewedModel& model, uint32_t block, bool attributes) {
+  const auto centres_of = [](const PackedBlock& packed) {
+    std::vector<glm::dvec3> centres;
+    packed.header->add_centres(packed, centres);
+    return centres;
+  };
+  if (const auto kept = loader_.find({model.source->id(), block, attributes})) return centres_of(*kept);
+  return model.source->load(block, attributes).map(centres_of);
+}
+
 /// Stores loaded blocks, up to the limit. Returns the number of blocks stored.
 size_t Residency::upload_some(const ViewedModel& model, const ViewParameters& parameters, PreparedView& view) {
   constexpr double kMotionMs = 8;  // checked between blocks, so the last block may exceed it

@@ -37,9 +37,9 @@ struct ViewParameters {
   /// See SelectionCriteria; outlives the preparation. A picture at rest has no limit.
   const std::vector<uint32_t>* items = nullptr;
   uint64_t most_items = std::numeric_limits<uint64_t>::max();
-  std::optional<selection::Window> window{};          ///< see SelectionCriteria
-  const std::vector<uint32_t>* roots = nullptr;       ///< see SelectionCriteria; outlives the preparation
-  const selection::VisibleDepths* visible = nullptr;  ///< see SelectionCriteria; outlives the preparation
+  std::optional<selection::Window> window{};       ///< see SelectionCriteria
+  const std::vector<uint32_t>* roots = nullptr;    ///< see SelectionCriteria; outlives the preparation
+  const selection::Visibility* visible = nullptr;  ///< see SelectionCriteria; outlives the preparation
   /// A picture that is prepared instead.
   struct Survey {
     double surfels = 0;  ///< if more of them would be drawn
@@ -90,6 +90,10 @@ class Residency {
   /// Views prepared between these two calls belong to pictures that preempt another one, whose blocks stay resident.
   void begin_nested_frame() { pool_.begin_nested_frame(); }
   void end_nested_frame() { pool_.end_nested_frame(); }
+
+  /// The centres of the items of a block, as far as its kind tells them, world units. A block that is not in host
+  /// memory is loaded again.
+  [[nodiscard]] Result<std::vector<glm::dvec3>> centres(const ViewedModel& model, uint32_t block, bool attributes);
 
   [[nodiscard]] const BlockPool& pool() const { return pool_; }
   void release_model(uint64_t model);

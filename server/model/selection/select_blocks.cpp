@@ -14,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kReluctance = 1.25;
 /// The prefilter extends a splat by up to this many pixels beyond its disc.
 constexpr double kPrefilterPixels = 4;
-/// Share of the pixels of a block that show it, below which it may be coarser. With 0.5, pictures of a street and of a
+/// Share of a block that is seen, below which it may be coarser. With 0.5, pictures of a street and of a
 /// town from 50 m lose 2.0 and 0.9 dB; with 0.2, they lose 0.5 and 0.0 dB (docs/performance.md).
 constexpr double kMostlyHidden = 0.2;
 
@@ -59,8 +59,9 @@ class Selector {
     Fate fate = Fate::kUnseen;
     bool available = false;  ///< resident blocks cover all of its visible part
     bool by_children = false;
-    double spacing = 0;          ///< projected, pixels
-    double urgency = kInfinity;  ///< smallest projected spacing of its ancestors, pixels
+    double spacing = 0;                    ///< projected, pixels
+    double urgency = kInfinity;            ///< smallest projected spacing of its ancestors, pixels
+    uint32_t entered = Visibility::kNone;  ///< of SelectionCriteria::visible: itself, or the nearest ancestor
   };
   struct Candidate {
     double spacing;
@@ -107,13 +108,26 @@ class Selector {
     return criteria_.clip != nullptr && !criteria_.clip->may_show(tree_.hulls[block].centres);
   }
 
-  /// The factor by which the spacing of a block may be larger because little of it is seen; infinite if nothing is.
+  /// The factor by which the spacing of a block in view may be larger because little of it is seen; infinite if nothing
+  /// is.
   [[nodiscard]] double coarsening(uint32_t block) const {
-    if (criteria_.visible == nullptr) return 1;
     const BlockHull& hull = tree_.hulls[block];
     const double margin = margin_of(hull, least_reach(criteria_.reaches, block));
-    const double seen = criteria_.visible->share_of(hull.centres, margin, frame_);
+    const double seen = criteria_.visible->share_of(hull.centres, margin, states_[block].entered);
     return std::max(1.0, std::sqrt(kMostlyHidden / seen));
+  }
+
+  /// What is as fine as the coarse picture may stay so.
+  [[nodiscard]] bool may_be_coarser(const State& state) const {
+    return criteria_.visible != nullptr && state.spacing > criteria_.spacing &&
+           state.spacing <= criteria_.visible->spacing();
+  }
+
+  [[nodiscard]] uint32_t entered_block(uint32_t block, uint32_t parent) const {
+    if (criteria_.visible == nullptr) return Visibility::kNone;
+    const uint32_t own = criteria_.visible->index_of(block);
+    const bool inherits = own == Visibility::kNone && parent != ldc::BlockEntry::kNoParent;
+    return inherits ? states_[parent].entered : own;
   }
 
   [[nodiscard]] std::span<const uint32_t> roots() const {
@@ -135,10 +149,11 @@ class Selector {
     if (parent != ldc::BlockEntry::kNoParent && states_[parent].fate != Fate::kUnseen) {
       state.urgency = std::min(states_[parent].urgency, states_[parent].spacing);
     }
+    state.entered = entered_block(block, parent);
     seen_.push_back(block);
     if (tree_.tree.children(block).count == 0) return;
     if (criteria_.ghost_spacing && state.spacing <= *criteria_.ghost_spacing && clipped_away(block)) return;
-    if (state.spacing > criteria_.spacing) state.spacing /= coarsening(block);
+    if (may_be_coarser(state)) state.spacing /= coarsening(block);
     const bool before = std::binary_search(was_refined_.begin(), was_refined_.end(), block);
     candidates_.push({before ? kReluctance * state.spacing : state.spacing, block});
   }

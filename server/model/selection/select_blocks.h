@@ -10,7 +10,7 @@
 #include "geometry/clip.h"
 #include "ldc/block_tree.h"
 #include "selection/block_hull.h"
-#include "selection/visible_depths.h"
+#include "selection/visibility.h"
 
 namespace surfcast::selection {
 
@@ -51,7 +51,7 @@ struct SelectionCriteria {
   /// The blocks from which refinement starts: none is below another one. Null: the roots of the tree.
   const std::vector<uint32_t>* roots = nullptr;
   /// Of a coarse picture of this view: blocks of which little is seen are refined less. Null: all are seen.
-  const VisibleDepths* visible = nullptr;
+  const Visibility* visible = nullptr;
 };
 
 /// A block that is not resident and would refine the picture.
@@ -81,8 +81,8 @@ struct BlockSelection {
 ///   reach the requested spacing or the budget is used up. The result is the cut of smallest error that fits. A block
 ///   whose children exceed one of the budgets stays; others may still be refined. Roots are selected even if they
 ///   exceed the budgets.
-/// - Visibility: a block of which nothing is seen is not refined. If it is seen in less than a fifth of its pixels, its
-///   projected spacing counts as smaller by the root of this ratio.
+/// - Visibility: if less than a fifth of a block is seen, its projected spacing counts as smaller by the root of this
+///   ratio; where nothing is seen, it is not refined. The spacing of the coarse picture is reached everywhere.
 /// - Hysteresis: `was_refined` is `refined` of the previous picture, or empty. A refined block stays refined until its
 ///   projected spacing is a fifth below the requested one. Small camera motions then do not switch levels back and
 ///   forth. The requested spacing is still reached, because hysteresis only delays coarsening.

@@ -70,6 +70,14 @@ void VisibleDepths::enter(int x, int y, std::span<const DepthRange> pixels) {
   }
 }
 
+bool VisibleDepths::may_show(const glm::dvec2& pixel, double z, const geometry::CameraFrame& frame) const {
+  // The surfel and that which hides it may each be off by as much.
+  const double tolerance = 1 + 2 * spacing_ / frame.eta;
+  const auto x = static_cast<ptrdiff_t>(cell_of(pixel.x, cell_, across_));
+  const auto y = static_cast<ptrdiff_t>(cell_of(pixel.y, cell_, down_));
+  return cells_[static_cast<size_t>(y * across_ + x)].opaque <= static_cast<float>(tolerance / z);
+}
+
 double VisibleDepths::share_of(const geometry::Box& box, double margin, const geometry::CameraFrame& frame) const {
   const std::optional<Projection> projection = project(box, margin, frame);
   if (!projection) return 1;

@@ -30,6 +30,10 @@ class VisibleDepths {
   /// beside the eye. `frame`: of the picture.
   [[nodiscard]] double share_of(const geometry::Box& box, double margin, const geometry::CameraFrame& frame) const;
 
+  /// Whether a surfel may be shown by its centre: in pixels from the top left corner, moved into the picture if it is
+  /// outside, and at this camera z, which is positive.
+  [[nodiscard]] bool may_show(const glm::dvec2& pixel, double z, const geometry::CameraFrame& frame) const;
+
  private:
   double spacing_;
   int cell_;                       ///< side of a cell, pixels
