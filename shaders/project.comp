@@ -39,6 +39,10 @@ layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer no
 const float kSmallExtent = 24.0;        // pixels
 const float kSmallAngle = 0.25;         // tangent
 const float kSmallPerspective = 0.02;  // relative change of the standard deviation
+// The same for surfels that stand in for finer ones. They are mostly hidden, or soon replaced. Large splats among the
+// small ones of a tile make it several times as slow to draw.
+const float kCoarseExtent = 64.0;
+const float kCoarsePerspective = 0.5;
 
 struct Surfel {
   vec3 o;  // camera frame
@@ -46,6 +50,7 @@ struct Surfel {
   float radius;
   float weight;
   uint color;
+  bool coarse;  // stands in for finer ones
 #ifdef SURFCAST_TRANSPARENT
   float opacity;
 #endif
@@ -239,8 +244,10 @@ void project_large(Surfel s, bool reaches_eye_plane, float gain) {
   append(true, range, a, b, words, lit_normal(s));
 }
 
-bool is_small(float sigma, float extent, float depth) {
-  return extent <= min(kSmallExtent, kSmallAngle * eta()) && sigma * extent <= kSmallPerspective * depth;
+bool is_small(bool coarse, float sigma, float extent, float depth) {
+  float most = coarse ? kCoarseExtent : kSmallExtent;
+  float change = coarse ? kCoarsePerspective : kSmallPerspective;
+  return extent <= min(most, kSmallAngle * eta()) && sigma * extent <= change * depth;
 }
 
 // True if the splat is small for every orientation of the surfel.
@@ -249,7 +256,8 @@ bool is_surely_small(Surfel s) {
   vec2 ray = s.o.xy / s.o.z;
   float spread = frontal_deviation(sigma, s.o.z);
   float variance = spread * spread * (1.0 + max(ray.x * ray.x, ray.y * ray.y)) + frame.filter_.x;
-  return !reaches_eye_plane(s.o.z, s.radius) && is_small(sigma, sqrt(SURFCAST_KERNEL_CUTOFF * variance), s.o.z);
+  float extent = sqrt(SURFCAST_KERNEL_CUTOFF * variance);
+  return !reaches_eye_plane(s.o.z, s.radius) && is_small(s.coarse, sigma, extent, s.o.z);
 }
 
 void project_surely_small(Surfel s) {
@@ -269,7 +277,7 @@ void project(Surfel s) {
   ScreenVariance v = screen_variance(s.n, ray, frontal_deviation(sigma, s.o.z), frame.filter_.x);
   float c = cutoff(v.gain);
   vec2 extent = sqrt(c * v.s.xz);
-  if (is_small(sigma, max(extent.x, extent.y), s.o.z)) {
+  if (is_small(s.coarse, sigma, max(extent.x, extent.y), s.o.z)) {
     project_small(s, ray, pixel_of_ray(ray), v, c);
   } else {
     project_large(s, false, v.gain);
@@ -289,6 +297,7 @@ Surfel placed_surfel(uvec4 run, BlockView block, uvec4 texel, out bool away) {
   s.o = block.origin.xyz + rotation * (block.step.xyz * surfel_position(texel));
   s.radius = surfel_size(texel, block.scale).x;
   s.n = rotation * surfel_normal(texel);
+  s.coarse = (run.z & SURFCAST_RUN_COARSE) != 0u;
   away = dot(s.n, s.o) >= 0.0;
   if (away) s.n = -s.n;
 #ifdef SURFCAST_SCATTER

@@ -109,6 +109,7 @@ struct Chunk {
 #define SURFCAST_RUN_SCATTER 0x80000u     // scatter, in variants of the projection that draw it
 #define SURFCAST_RUN_CURVED 0x100000u     // surfels have two texels: the second one is their curvature
 #define SURFCAST_RUN_TWO_SIDED 0x200000u  // normals do not tell front from back
+#define SURFCAST_RUN_COARSE 0x800000u     // of a block that stands in for finer ones: need not be exact
 // Merged surfels replace their pair slightly early, because rounding could otherwise drop both.
 #define SURFCAST_SPACING_SLACK 0.99
 

@@ -33,13 +33,14 @@ DepthRange depths_of(const residency::PackedLattice& lattice, const geometry::Ca
 void add_chunks(const VisibleBlock& block, uint32_t view, const residency::TexelRun& run,
                 std::vector<layout::Chunk>& chunks) {
   const uint32_t end = run.first + run.count;
+  const uint32_t flags = run.flags | (block.coarse ? SURFCAST_RUN_COARSE : 0U);
   for (uint32_t first = run.first; first < end;) {
     const uint32_t in_page = first % residency::BlockPool::kPageTexels;
     const uint32_t texel =
         block.resident->pages[first / residency::BlockPool::kPageTexels] * residency::BlockPool::kPageTexels + in_page;
     const uint32_t count = std::min(end - first, residency::BlockPool::kPageTexels - in_page);
     chunks.push_back(
-        {glm::uvec4(view, texel, count | run.flags, residency::kMaxPackedPerSurfel * block.first_surfel + first)});
+        {glm::uvec4(view, texel, count | flags, residency::kMaxPackedPerSurfel * block.first_surfel + first)});
     first += count;
   }
 }

@@ -22,6 +22,7 @@ struct VisibleBlock {
   selection::RadiusRange radii;  ///< radii at the requested spacing within the block
   uint32_t first_surfel = 0;     ///< index of its first surfel in the model, see Scene::first_surfel
   uint32_t kind = 0;             ///< number in the table of kinds
+  bool coarse = false;           ///< it stands in for finer ones, and need not be drawn exactly
 };
 
 /// All inputs for drawing one region.

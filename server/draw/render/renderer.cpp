@@ -78,6 +78,13 @@ selection::Window window_of(const Region& region) {
           static_cast<double>(region.y + region.height)};
 }
 
+/// Whether a block is drawn in place of finer ones: of which too little is seen, or which are still to come.
+bool stands_in(const ldc::BlockTree& tree, uint32_t block, const geometry::CameraFrame& frame, double spacing) {
+  constexpr double kCoarser = 2;
+  return tree.children(block).count > 0 &&
+         selection::projected_spacing(tree.blocks()[block], frame) > kCoarser * spacing;
+}
+
 /// A hash of the drawn blocks, never 0.
 uint64_t cut_of(const selection::BlockSelection& selection) {
   return hash_of(std::as_bytes(std::span(selection.draw))) | 1;
@@ -310,7 +317,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Part& part, const reside
   if (variant.depth) result.depth = picture::empty_depth_map(request.width, request.height, request.depth_texels);
   result.depth.seen_through = variant.depth && (variant.transparent || !scene.model().volumes().empty());
   // A picture that will soon be redrawn does not need supersampling.
-  variant.silhouettes &= view.nothing_pending && !view.survey;
+  const bool to_be_redrawn = !view.nothing_pending || view.survey;
+  variant.silhouettes &= !to_be_redrawn;
   variant.shown_depths = shown != nullptr;
   const bool layered = scene.mixed() || scene.has_glyphs();  // many buffers for every pixel
   const int margin = variant.eye_dome || variant.silhouettes || scene.mixed() ? kNeighbourMargin : 0;
@@ -344,10 +352,13 @@ Result<RegionStats> Renderer::State::draw_regions(const Part& part, const reside
          selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
                                         drawn.x + drawn.width, drawn.y + drawn.height, sides_of(display),
                                         display.glyph_reaches.empty() ? nullptr : &display.glyph_reaches)) {
-      const geometry::Box& bounds = scene.model().tree().blocks()[block].bounds;
+      const ldc::BlockTree& tree = scene.model().tree();
+      const geometry::Box& bounds = tree.blocks()[block].bounds;
+      const bool replaces = !view.selection.budget_reached && stands_in(tree, block, frame, request.spacing);
+      const bool coarse = replaces || to_be_redrawn;
       task.blocks.push_back({&residency.pool().at({scene.model().id(), block}),
                              selection::radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block),
-                             scene.kind_of(block)});
+                             scene.kind_of(block), coarse});
     }
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
