@@ -56,12 +56,17 @@ glm::u16vec3 expected_color(const surfel::SurfelCloud& cloud, size_t own) {
   return color;
 }
 
+std::vector<glm::u16vec3> colors_of(const surfel::SurfelCloud& cloud) {
+  constexpr size_t kAround = 12;
+  return coarse_colors(estimation::find_neighbourhoods(cloud.positions, cloud.bounds(), kAround), cloud);
+}
+
 TEST(CoarseColors, AreMeansOfTheSurroundingsInLinearLight) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> level(0, 255);
   const surfel::SurfelCloud cloud =
       make_plane(12, [&](int, int) { return glm::u16vec3(level(random), level(random), level(random)); });
-  const std::vector<glm::u16vec3> colors = coarse_colors(cloud);
+  const std::vector<glm::u16vec3> colors = colors_of(cloud);
   ASSERT_EQ(colors.size(), cloud.size());
   for (size_t i = 0; i < cloud.size(); ++i) {
     const glm::u16vec3 expected = expected_color(cloud, i);
@@ -72,15 +77,15 @@ TEST(CoarseColors, AreMeansOfTheSurroundingsInLinearLight) {
 
 TEST(CoarseColors, OfOneColourAreThatColour) {
   const surfel::SurfelCloud cloud = make_plane(9, [](int, int) { return glm::u16vec3(3, 140, 255); });
-  EXPECT_THAT(coarse_colors(cloud), ::testing::Each(glm::u16vec3(3, 140, 255)));
+  EXPECT_THAT(colors_of(cloud), ::testing::Each(glm::u16vec3(3, 140, 255)));
 }
 
 TEST(CoarseColors, OfASinglePointAndOfPointsAtOnePlaceAreTheirs) {
   const auto red = [](int, int) { return glm::u16vec3(200, 10, 20); };
-  EXPECT_THAT(coarse_colors(make_plane(1, red)), ::testing::ElementsAre(glm::u16vec3(200, 10, 20)));
+  EXPECT_THAT(colors_of(make_plane(1, red)), ::testing::ElementsAre(glm::u16vec3(200, 10, 20)));
   surfel::SurfelCloud twice = make_plane(2, red);
   for (glm::dvec3& position : twice.positions) position = twice.positions.front();
-  EXPECT_THAT(coarse_colors(twice), ::testing::Each(glm::u16vec3(200, 10, 20)));
+  EXPECT_THAT(colors_of(twice), ::testing::Each(glm::u16vec3(200, 10, 20)));
 }
 
 TEST(CoarseColors, OfASurfaceHaveNothingOfOneAtRightAnglesNorOfScatter) {
@@ -95,7 +100,7 @@ TEST(CoarseColors, OfASurfaceHaveNothingOfOneAtRightAnglesNorOfScatter) {
       cloud.scatter[i] = 1;
     }
   }
-  const std::vector<glm::u16vec3> colors = coarse_colors(cloud);
+  const std::vector<glm::u16vec3> colors = colors_of(cloud);
   for (size_t i = 0; i < cloud.size(); ++i) {
     if (i % 8 < 4) {
       EXPECT_EQ(colors[i], grey) << i;

@@ -34,10 +34,15 @@ size_t add_scatter(const glm::dvec3& position, surfel::SurfelCloud& cloud) {
   return cloud.size() - 1;
 }
 
+void adopt(surfel::SurfelCloud& cloud) {
+  constexpr size_t kAround = 12;
+  adopt_planes(estimation::find_neighbourhoods(cloud.positions, cloud.bounds(), kAround), cloud);
+}
+
 TEST(CoarsePlanes, ScatterOnTheGroundBecomesADiscOfIt) {
   surfel::SurfelCloud cloud = make_ground(9);
   const size_t added = add_scatter({4.5, 4.5, 0.15 * kRadius}, cloud);
-  adopt_planes(cloud);
+  adopt(cloud);
   EXPECT_FALSE(cloud.is_scatter(added));
   EXPECT_EQ(cloud.normals[added], glm::vec3(0, 0, 1));
   EXPECT_FLOAT_EQ(cloud.radii[added], 0.7F * kRadius);
@@ -47,7 +52,7 @@ TEST(CoarsePlanes, ScatterAboveTheGroundStays) {
   surfel::SurfelCloud cloud = make_ground(9);
   const size_t above = add_scatter({4.5, 4.5, 0.3 * kRadius}, cloud);
   const size_t beyond = add_scatter({30, 4, 0}, cloud);
-  adopt_planes(cloud);
+  adopt(cloud);
   EXPECT_TRUE(cloud.is_scatter(above));
   EXPECT_TRUE(cloud.is_scatter(beyond)) << "in the plane, but far from all discs";
   EXPECT_FLOAT_EQ(cloud.radii[above], 0.1F);
@@ -59,7 +64,7 @@ TEST(CoarsePlanes, WhereAWallMeetsTheGroundMostDiscsDecide) {
   std::vector<size_t> foot;
   for (int x = 0; x < 9; ++x) foot.push_back(add_scatter({x, 8.6, 0.05}, cloud));
   for (int z = 2; z < 6; ++z) add_scatter({4, 8.7, 0.9 * z}, cloud);
-  adopt_planes(cloud);
+  adopt(cloud);
   for (const size_t point : foot) EXPECT_EQ(cloud.normals[point], glm::vec3(0, 0, 1)) << point;
 }
 
@@ -77,7 +82,7 @@ TEST(CoarsePlanes, ACrownStaysScatter) {
     cloud.radii.back() = kRadius;
   }
   const std::vector<uint8_t> before = cloud.scatter;
-  adopt_planes(cloud);
+  adopt(cloud);
   size_t scatter = 0, adopted = 0;
   for (size_t i = 0; i < cloud.size(); ++i) {
     scatter += before[i];
@@ -89,10 +94,10 @@ TEST(CoarsePlanes, ACrownStaysScatter) {
 TEST(CoarsePlanes, WithoutScatterNothingChanges) {
   surfel::SurfelCloud cloud = make_ground(3);
   const std::vector<float> radii = cloud.radii;
-  adopt_planes(cloud);
+  adopt(cloud);
   EXPECT_EQ(cloud.radii, radii);
   cloud.scatter.clear();
-  adopt_planes(cloud);
+  adopt(cloud);
   EXPECT_TRUE(cloud.scatter.empty());
 }
 

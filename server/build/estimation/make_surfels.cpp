@@ -272,7 +272,7 @@ void SurfelReport::add(const SurfelReport& part) {
 }
 
 PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report) {
-  const Sites sites = find_sites(cloud.positions, frame.bounds);
+  Sites sites = find_sites(cloud.positions, frame.bounds);
   SiteFacts facts = find_site_facts(cloud, sites, frame);
   Findings findings = study_neighbourhoods(sites, !radii_kept(cloud, frame), facts);
   PartSurfels made;
@@ -280,6 +280,7 @@ PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, Part
   find_radii(sites, findings.graph, facts, std::move(findings.guesses), frame, made);
   made.trees =
       fill_normals(sites, findings.graph, facts, std::move(findings.normals), frame.sides, made.cloud, signs, report);
+  if (frame.keep_neighbours) made.neighbourhoods = Neighbourhoods{std::move(sites), std::move(findings.graph)};
   return made;
 }
 

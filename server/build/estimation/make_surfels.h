@@ -25,8 +25,9 @@ struct PartFrame {
   std::vector<std::optional<double>> surface_steps;  ///< of each source, see ScanSchema; empty: none is known
   std::vector<size_t> inputs;                        ///< index of the input of each source
   RadiusPolicy radii = RadiusPolicy::kAuto;
-  bool sides = true;    ///< whether estimated normals are to have signs that are consistent
-  uint64_t points = 0;  ///< of the whole cloud
+  bool sides = true;             ///< whether estimated normals are to have signs that are consistent
+  uint64_t points = 0;           ///< of the whole cloud
+  bool keep_neighbours = false;  ///< see PartSurfels
 };
 
 /// The surfels of a part including its halo, before what depends on the whole cloud: the signs of their normals, what
@@ -37,6 +38,8 @@ struct PartSurfels {
   Estimates estimates;          ///< radii as stated where nobody asks for estimates
   std::vector<RadiusComparison> radii;  ///< of each input
   std::vector<SurfaceSample> samples;   ///< of the part's own surface points, in any order
+  /// If they are kept: the kNearNeighbours of each site; of a sparse sheet those that are on it.
+  std::optional<Neighbourhoods> neighbourhoods;
 };
 
 /// Makes surfels from clean points: estimates normals that are missing or NaN, and radii. `signs` receives the data

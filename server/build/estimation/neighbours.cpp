@@ -328,6 +328,12 @@ NeighbourGraph find_neighbours(const Sites& sites, size_t degree) {
   return find_neighbours(sites, degree, degree, [](uint32_t, std::span<const uint32_t>) {});
 }
 
+Neighbourhoods find_neighbourhoods(std::span<const glm::dvec3> world, const geometry::Box& frame, size_t degree) {
+  Neighbourhoods found{find_sites(world, frame), {}};
+  found.graph = find_neighbours(found.sites, degree);
+  return found;
+}
+
 NeighbourGraph find_neighbours(const Sites& sites, size_t degree, size_t visited, const NeighbourVisitor& visit) {
   NeighbourGraph graph;
   graph.degree = degree_for(sites, degree);

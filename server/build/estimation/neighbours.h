@@ -33,6 +33,12 @@ struct NeighbourGraph {
   [[nodiscard]] std::span<const uint32_t> of(size_t site) const { return {ids.data() + site * degree, degree}; }
 };
 
+/// The sites of points and their nearest sites.
+struct Neighbourhoods {
+  Sites sites;
+  NeighbourGraph graph;
+};
+
 /// The distance of a site to its third nearest, which tells how dense the sites are; paired echoes do not affect it.
 /// Local units. There must be so many neighbours.
 double third_distance(const Sites& sites, const NeighbourGraph& graph, uint32_t site);
@@ -42,6 +48,8 @@ using NeighbourVisitor = std::function<void(uint32_t site, std::span<const uint3
 
 /// The result is the same for any number of threads.
 NeighbourGraph find_neighbours(const Sites& sites, size_t degree);
+/// Of points within `frame`.
+Neighbourhoods find_neighbourhoods(std::span<const glm::dvec3> world, const geometry::Box& frame, size_t degree);
 
 /// The same, and calls `visit` with `visited` neighbours of every site (fewer if there are too few sites), of which
 /// the graph keeps the first `degree`.

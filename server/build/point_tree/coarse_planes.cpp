@@ -14,7 +14,6 @@
 namespace surfcast::point_tree {
 namespace {
 
-constexpr size_t kPointsAround = 12;
 /// Discs so far away count, and a point lies in the plane of a disc if it is so close to it. Both in radii of the disc.
 constexpr double kReach = 3;
 constexpr double kClose = 0.25;
@@ -37,11 +36,11 @@ Place place_of(const surfel::SurfelCloud& cloud, uint32_t point, uint32_t disc) 
 
 /// The disc whose plane a point adopts; none if the discs around do not agree.
 std::optional<uint32_t> find_plane(const surfel::SurfelCloud& cloud, uint32_t point,
-                                   const std::vector<uint32_t>& surfels, const estimation::Neighbours& near) {
+                                   const std::vector<uint32_t>& surfels, std::span<const uint32_t> near) {
   size_t discs = 0, agreeing = 0;
   double nearest = std::numeric_limits<double>::infinity();
   uint32_t found = 0;
-  for (const uint32_t site : near.ids) {
+  for (const uint32_t site : near) {
     const uint32_t disc = surfels[site];
     if (cloud.is_scatter(disc)) continue;
     const Place place = place_of(cloud, point, disc);
@@ -61,15 +60,15 @@ std::optional<uint32_t> find_plane(const surfel::SurfelCloud& cloud, uint32_t po
 
 }  // namespace
 
-void adopt_planes(surfel::SurfelCloud& cloud) {
+void adopt_planes(const estimation::Neighbourhoods& neighbourhoods, surfel::SurfelCloud& cloud) {
   if (cloud.scatter.empty()) return;
-  const estimation::Sites sites = estimation::find_sites(cloud.positions, cloud.bounds());
+  const estimation::Sites& sites = neighbourhoods.sites;
   const std::vector<uint32_t> surfels = sites.points();
   std::vector<std::optional<uint32_t>> planes(sites.size());
-  estimation::for_each_neighbourhood(sites, kPointsAround, [&](const estimation::Neighbours& near) {
-    const uint32_t own = surfels[near.site];
-    if (cloud.is_scatter(own)) planes[near.site] = find_plane(cloud, own, surfels, near);
-  });
+  for (size_t site = 0; site < sites.size(); ++site) {
+    const uint32_t own = surfels[site];
+    if (cloud.is_scatter(own)) planes[site] = find_plane(cloud, own, surfels, neighbourhoods.graph.of(site));
+  }
   for (size_t i = 0; i < cloud.size(); ++i) {
     const std::optional<uint32_t> plane = planes[sites.of_point[i]];
     if (!plane || !cloud.is_scatter(i)) continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimation/neighbours.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast::point_tree {
@@ -9,6 +10,7 @@ namespace surfcast::point_tree {
 /// it counts as scatter, although its finer level is a surface. Such a point takes the normal of the nearest disc
 /// whose plane it lies in, and a part of its radius. Two discs must agree, and most of those around: in a crown of
 /// leaves some plane passes every point. docs/in-place.md has measurements. The cloud has normals and radii.
-void adopt_planes(surfel::SurfelCloud& cloud);
+/// `neighbourhoods`: of its points.
+void adopt_planes(const estimation::Neighbourhoods& neighbourhoods, surfel::SurfelCloud& cloud);
 
 }  // namespace surfcast::point_tree

@@ -85,12 +85,13 @@ estimation::PartFrame frame_of(const surfel::SurfelCloud& cloud, const Cells& ce
   frame.radii = estimation::RadiusPolicy::kEstimate;
   frame.sides = false;
   frame.points = cloud.size();
+  frame.keep_neighbours = true;
   return frame;
 }
 
-/// Sets normals, radii and weights. Normals that are estimated may point to either side.
-void estimate_surfels(const Cells& cells, const ldc::OctreeKey& key, const scan::ScanSchema& schema,
-                      surfel::SurfelCloud& cloud) {
+/// Sets normals and radii. Normals that are estimated may point to either side.
+estimation::Neighbourhoods estimate_surfels(const Cells& cells, const ldc::OctreeKey& key,
+                                            const scan::ScanSchema& schema, surfel::SurfelCloud& cloud) {
   cloud.sources = {{schema.name, 0, cloud.size(), schema.grid}};
   const estimation::PartFrame frame = frame_of(cloud, cells, key);
   estimation::PartSigns signs;
@@ -104,22 +105,35 @@ void estimate_surfels(const Cells& cells, const ldc::OctreeKey& key, const scan:
   cloud.estimated_normals = !schema.normals;
   cloud.estimated_radii = true;
   cloud.oriented = schema.normals;
+  return std::move(*made.neighbourhoods);
 }
 
-/// Weighs the surfels, and leaves the first of them.
-void weigh_and_cut(surfel::SurfelCloud& cloud, size_t count) {
-  cloud.weights = surfel::normalization_weights(cloud);
+/// Leaves the first surfels.
+void cut(surfel::SurfelCloud& cloud, size_t count) {
   std::vector<bool> keep(cloud.size(), false);
   std::fill_n(keep.begin(), count, true);
   estimation::keep_surfels(cloud, keep);
 }
 
+/// Weighs the surfels among all, and leaves the first.
+void weigh_and_cut(surfel::SurfelCloud& cloud, size_t count) {
+  cloud.weights = surfel::normalization_weights(cloud);
+  cut(cloud, count);
+}
+
 /// The surfels of a level that is a sample as they stand for finer ones.
-surfel::SurfelCloud coarse_surfels(const surfel::SurfelCloud& cloud) {
+surfel::SurfelCloud coarse_surfels(const estimation::Neighbourhoods& neighbourhoods, const surfel::SurfelCloud& cloud) {
   surfel::SurfelCloud coarse = cloud;
-  adopt_planes(coarse);
-  if (coarse.colors) coarse.colors->values = coarse_colors(coarse);
+  adopt_planes(neighbourhoods, coarse);
+  if (coarse.colors) coarse.colors->values = coarse_colors(neighbourhoods, coarse);
   return coarse;
+}
+
+/// Whether leaves have some of the surfels: all those of a leaf, and those in octants without a child.
+bool have_leaves(const Node& node, std::span<const uint64_t> codes) {
+  return node.leaf() || std::ranges::any_of(codes, [&](uint64_t code) {
+           return node.children[ldc::octant_of_code(code, node.key.depth)] == Node::kNone;
+         });
 }
 
 std::shared_ptr<const surfel::SurfelCloud> with_radii_up_to(float largest, surfel::SurfelCloud cloud) {
@@ -194,10 +208,16 @@ CellSurfels surfels_of_node(const NodeTree& tree, uint32_t node, const PointPath
   for (const std::shared_ptr<const NodePoints>& step : path) {
     append_points(step->points, rows_around(*step, range, around), cell.cloud);
   }
-  estimate_surfels(cells, key, schema, cell.cloud);
-  if (!tree.nodes[node].leaf()) cell.coarse = coarse_surfels(cell.cloud);
-  weigh_and_cut(cell.cloud, count);
-  if (cell.coarse) weigh_and_cut(*cell.coarse, count);
+  const estimation::Neighbourhoods neighbourhoods = estimate_surfels(cells, key, schema, cell.cloud);
+  if (!tree.nodes[node].leaf()) {
+    cell.coarse = coarse_surfels(neighbourhoods, cell.cloud);
+    weigh_and_cut(*cell.coarse, count);
+  }
+  if (have_leaves(tree.nodes[node], cell.codes)) {
+    weigh_and_cut(cell.cloud, count);
+  } else {
+    cut(cell.cloud, count);
+  }
   return cell;
 }
 

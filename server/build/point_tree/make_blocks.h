@@ -27,7 +27,7 @@ using PointPath = std::vector<std::shared_ptr<const NodePoints>>;
 
 /// The surfels of a cell, along the Morton order.
 struct CellSurfels {
-  surfel::SurfelCloud cloud;
+  surfel::SurfelCloud cloud;    ///< without weights if no leaf has some of them
   std::vector<uint64_t> codes;  ///< of its surfels, see Cells::code_of
   /// The same surfels as they stand for finer ones; none of a node that has no child.
   std::optional<surfel::SurfelCloud> coarse;

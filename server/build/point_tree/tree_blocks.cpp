@@ -19,7 +19,7 @@ namespace {
 constexpr size_t kPointsShare = 2;
 
 /// Counts up when blocks are made in another way: those on disk are made anew then.
-constexpr int kMakerVersion = 4;
+constexpr int kMakerVersion = 5;
 
 size_t bytes_of_block(const model::DecodedBlock& block) {
   size_t each = sizeof(glm::ivec3) + sizeof(glm::vec3) + 2 * sizeof(float) + (block.scatter.empty() ? 0 : 1) +
