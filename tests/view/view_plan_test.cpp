@@ -40,8 +40,8 @@ class ViewPlanTest : public ::testing::Test {
 
   static constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
   /// The number of blocks that may be missing for a frame at rest to be drawn, after `missing` were recorded.
-  uint32_t max_missing_blocks(uint32_t missing) {
-    plan_.record_missing(missing, now_);
+  uint32_t max_missing_blocks(uint32_t missing, uint32_t blocks = 2000) {
+    plan_.record_missing(missing, blocks, now_);
     return plan_.max_missing_blocks(now_);
   }
 
@@ -187,7 +187,7 @@ TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
     const auto come = std::min(model.blocks, static_cast<uint32_t>(ms * model.blocks_per_ms));
     const uint32_t missing = model.blocks - come;
     const uint64_t frame = begin(FrameKind::kRefined);
-    plan_.record_missing(missing, now_);
+    plan_.record_missing(missing, model.blocks, now_);
     const bool worth = drawn_frames == 0 || missing == 0 || missing <= plan_.max_missing_blocks(now_);
     if (worth) {
       const double draw_ms = model.draw_ms * come / model.blocks;
@@ -228,6 +228,21 @@ TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsAMomentForItsBlocks) {
   EXPECT_EQ(max_missing_blocks(10), kAny) << "none came: what is there is shown";
 }
 
+TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsForHalfOfItsBlocks) {
+  update(/*moving=*/false);
+  pass(600);
+  EXPECT_EQ(plan_.max_missing_blocks(now_), 0u) << "nobody knows yet how many are missing";
+  update(/*moving=*/false);
+  EXPECT_EQ(max_missing_blocks(97, 98), 0u);
+  pass(2499);
+  EXPECT_EQ(max_missing_blocks(50, 98), 0u) << "it would show little more than the frame in motion";
+  EXPECT_EQ(max_missing_blocks(48, 98), 0u) << "the others come soon";
+  EXPECT_EQ(max_missing_blocks(49, 98), kAny) << "that many do not";
+  EXPECT_EQ(max_missing_blocks(97, 98), 0u);
+  pass(1);
+  EXPECT_EQ(max_missing_blocks(97, 98), kAny) << "not for ever";
+}
+
 TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsForAllBlocksThatComeSoon) {
   update(/*moving=*/false);
   EXPECT_EQ(max_missing_blocks(700), 0u);
@@ -265,7 +280,7 @@ TEST_F(ViewPlanTest, BlocksThatArriveSlowlyAreNotGivenUp) {
   show(FrameKind::kRefined, FrameResult::kImprovable);
   for (uint32_t i = 0; i < 20; ++i) {
     pass(3000);
-    plan_.record_missing(100 - i, now_);
+    plan_.record_missing(100 - i, 1000, now_);
     show(FrameKind::kRefined, FrameResult::kNothing);
   }
   pass(50);

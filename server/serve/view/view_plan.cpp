@@ -137,10 +137,10 @@ void ViewPlan::record_draw(double draw_ms, uint32_t missing, ViewTime now) {
   drawn_missing_ = missing;
 }
 
-void ViewPlan::record_missing(uint32_t missing, ViewTime now) {
-  if (!first_sample_) first_sample_ = last_sample_ = MissingSample{missing, now};
+void ViewPlan::record_missing(uint32_t missing, uint32_t blocks, ViewTime now) {
+  if (!first_sample_) first_sample_ = last_sample_ = MissingSample{missing, blocks, now};
   if (missing < last_sample_.missing) improved_at_ = now;
-  last_sample_ = {missing, now};
+  last_sample_ = {missing, blocks, now};
 }
 
 namespace {
@@ -152,12 +152,15 @@ constexpr double kPauses = 2;
 
 }  // namespace
 
-/// Before the first frame at rest, waits for all blocks until `final` after the start of rest. Waits longer only if all
-/// blocks will arrive soon at the rate measured so far.
+/// Before the first frame at rest, waits for all blocks until `final` after the start of rest. Waits longer if all
+/// blocks will arrive soon at the rate measured so far, and for a while as long as most are missing: such a frame shows
+/// little more than the one in motion, and drawing it delays the blocks.
 uint32_t ViewPlan::max_missing_before_first_draw(ViewTime now) const {
   constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
-  if (now < rest_at_ + timing_.final) return 0;
-  if (!first_sample_ || last_sample_.missing >= first_sample_->missing) return kAny;
+  if (now < rest_at_ + timing_.final || !first_sample_) return 0;
+  const uint32_t half = last_sample_.blocks / 2;
+  if (last_sample_.missing > half && now < rest_at_ + timing_.block_wait) return 0;
+  if (last_sample_.missing >= first_sample_->missing) return kAny;
   const auto passed = last_sample_.at - first_sample_->at;
   const double to_come = static_cast<double>(last_sample_.missing) / (first_sample_->missing - last_sample_.missing);
   const auto whole_at = last_sample_.at + std::chrono::duration_cast<ViewTime::duration>(to_come * passed);

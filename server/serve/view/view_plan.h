@@ -81,8 +81,8 @@ class ViewPlan {
   void try_takeover(ViewTime now) { next_try_at_ = now + timing_.takeover_try; }
   /// A frame at rest of the newest picture was drawn in `draw_ms`, with `missing` blocks missing.
   void record_draw(double draw_ms, uint32_t missing, ViewTime now);
-  /// The newest picture now has `missing` blocks missing.
-  void record_missing(uint32_t missing, ViewTime now);
+  /// The newest picture, of so many blocks, now has `missing` blocks missing.
+  void record_missing(uint32_t missing, uint32_t blocks, ViewTime now);
   /// The most missing blocks with which a frame at rest is worth drawing while they are still loading. A frame of a
   /// large model takes seconds; one frame for every few blocks would only delay the complete one.
   [[nodiscard]] uint32_t max_missing_blocks(ViewTime now) const;
@@ -125,6 +125,7 @@ class ViewPlan {
   /// The number of missing blocks of the newest picture at one time.
   struct MissingSample {
     uint32_t missing = 0;
+    uint32_t blocks = 0;  ///< of the picture
     ViewTime at;
   };
   std::optional<MissingSample> first_sample_;

@@ -389,7 +389,7 @@ void ViewSession::drop_former_editions() {
 /// Records how complete the newest picture is.
 void ViewSession::record_progress(service::EncodedPicture& picture, ViewTime now) {
   const uint32_t missing = picture.stats.blocks_missing;
-  plan_.record_missing(missing, now);
+  plan_.record_missing(missing, picture.stats.blocks_selected, now);
   if (!picture.bytes.empty()) {
     displayed_cut_ = picture.cut;
     plan_.record_draw(picture.draw_ms, missing, now);
