@@ -38,9 +38,10 @@ void expect_same(const model::DecodedBlock& a, const model::DecodedBlock& b) {
 class KeptBlocksTest : public ::testing::Test {
  protected:
   /// Opens the file, as this version of it, and decodes all blocks. Waits until what is to be kept is.
-  [[nodiscard]] std::vector<model::DecodedBlock> blocks_of(const std::string& content, const std::string& version) {
+  [[nodiscard]] std::vector<model::DecodedBlock> blocks_of(const std::string& content, const std::string& version,
+                                                           const InPlaceLimits& limits = {}) {
     const Result<model::ModelFile> model =
-        open_in_place(TreeFormat::kCopc, std::make_unique<const OwnedSource>(content, version), nullptr, {},
+        open_in_place(TreeFormat::kCopc, std::make_unique<const OwnedSource>(content, version), nullptr, limits,
                       std::move(*model::BlockCache::open(folder_, uint64_t{64} << 20)));
     EXPECT_TRUE(model) << model.error().message;
     std::vector<model::DecodedBlock> blocks;
@@ -62,6 +63,15 @@ TEST_F(KeptBlocksTest, AreThoseThatWereMade) {
   const std::vector<model::DecodedBlock> read = blocks_of(content, "1");
   ASSERT_EQ(made.size(), read.size());
   for (size_t i = 0; i < made.size(); ++i) expect_same(made[i], read[i]);
+}
+
+TEST_F(KeptBlocksTest, ThatHaveNoRoomToWaitAreNotKept) {
+  const std::string content = small_file();
+  const std::vector<model::DecodedBlock> made = blocks_of(content, "1", {.memory = 4000});
+  EXPECT_EQ(kept(), 0U);
+  const std::vector<model::DecodedBlock> again = blocks_of(content, "1");
+  ASSERT_EQ(made.size(), again.size());
+  for (size_t i = 0; i < made.size(); ++i) expect_same(made[i], again[i]);
 }
 
 TEST_F(KeptBlocksTest, OfAnotherVersionOfTheFileAreNotTaken) {

@@ -1,6 +1,8 @@
 #include "point_tree/block_keeper.h"
 
+#include <set>
 #include <span>
+#include <variant>
 
 #include "base/idle_priority.h"
 #include "model/block_encoder.h"
@@ -10,8 +12,25 @@
 namespace surfcast::point_tree {
 namespace {
 
-/// Blocks that wait to be coded: with their clouds some 200 MB at most.
-constexpr size_t kMaxWaiting = 64;
+size_t bytes_of(const surfel::SurfelCloud& cloud) {
+  size_t each = sizeof(glm::dvec3) + sizeof(glm::vec3) + 2 * sizeof(float) + 1;
+  if (cloud.colors) each += sizeof(glm::u16vec3);
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
+    each += std::visit([](const auto& values) { return sizeof(values[0]); }, scalar.values);
+  }
+  return each * cloud.size();
+}
+
+/// Of blocks with their clouds, which several of them share.
+size_t bytes_of(const std::vector<MadeBlock>& blocks) {
+  size_t bytes = 0;
+  std::set<const surfel::SurfelCloud*> counted;
+  for (const MadeBlock& block : blocks) {
+    bytes += sizeof(block) + block.members.size() * sizeof(block.members[0]);
+    if (counted.insert(block.cloud.get()).second) bytes += bytes_of(*block.cloud);
+  }
+  return bytes;
+}
 
 void write_vector(model::ByteWriter& writer, const glm::dvec3& v) {
   for (int axis = 0; axis < 3; ++axis) writer.put(v[axis]);
@@ -59,11 +78,12 @@ std::optional<model::DecodedBlock> decode_made(std::span<const std::byte> bytes,
 }
 
 BlockKeeper::BlockKeeper(std::shared_ptr<model::BlockCache> cache, std::string identity, int color_bits,
-                         std::vector<model::ScalarColumn> scalars)
+                         std::vector<model::ScalarColumn> scalars, size_t most_waiting)
     : cache_(std::move(cache)),
       identity_(std::move(identity)),
       color_bits_(color_bits),
       scalars_(std::move(scalars)),
+      most_waiting_(most_waiting),
       thread_([this] { work(); }) {}
 
 BlockKeeper::~BlockKeeper() {
@@ -88,29 +108,32 @@ std::optional<model::DecodedBlock> BlockKeeper::find(uint32_t block) const {
 }
 
 void BlockKeeper::keep(const std::vector<MadeBlock>& blocks) {
+  const size_t bytes = bytes_of(blocks);
   {
     const std::lock_guard lock(mutex_);
-    for (const MadeBlock& block : blocks) {
-      if (queue_.size() < kMaxWaiting) queue_.push_back(block);
-    }
+    if (waiting_bytes_ + bytes > most_waiting_) return;
+    waiting_bytes_ += bytes;
+    queue_.push_back({blocks, bytes});
   }
   wake_.notify_all();
 }
 
 /// Waits. None when the keeper ends: what still waits then is coded first.
-std::optional<MadeBlock> BlockKeeper::next() {
+std::optional<BlockKeeper::Waiting> BlockKeeper::next() {
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
   if (queue_.empty()) return std::nullopt;
-  MadeBlock block = std::move(queue_.front());
+  Waiting waiting = std::move(queue_.front());
   queue_.pop_front();
-  return block;
+  return waiting;
 }
 
 void BlockKeeper::work() {
   use_idle_priority();
-  while (const std::optional<MadeBlock> block = next()) {
-    cache_->write_made(key_of(block->block), encode_made(*block));
+  while (const std::optional<Waiting> waiting = next()) {
+    for (const MadeBlock& block : waiting->blocks) cache_->write_made(key_of(block.block), encode_made(block));
+    const std::lock_guard lock(mutex_);
+    waiting_bytes_ -= waiting->bytes;
   }
 }
 

@@ -22,9 +22,10 @@ namespace surfcast::point_tree {
 /// idle priority does it. What does not fit into its queue is not kept. Thread-safe.
 class BlockKeeper {
  public:
-  /// `identity`: what the blocks are made of, and how. `scalars`: of all blocks.
+  /// `identity`: what the blocks are made of, and how. `scalars`: of all blocks. `most_waiting`: bytes of blocks that
+  /// wait to be coded; where that is used up, blocks are not kept.
   BlockKeeper(std::shared_ptr<model::BlockCache> cache, std::string identity, int color_bits,
-              std::vector<model::ScalarColumn> scalars);
+              std::vector<model::ScalarColumn> scalars, size_t most_waiting);
   ~BlockKeeper();
   BlockKeeper(const BlockKeeper&) = delete;
   BlockKeeper& operator=(const BlockKeeper&) = delete;
@@ -32,20 +33,29 @@ class BlockKeeper {
   [[nodiscard]] bool contains(uint32_t block) const;
   /// The block as it was made; none if it is not kept.
   [[nodiscard]] std::optional<model::DecodedBlock> find(uint32_t block) const;
+  /// The blocks of a node.
   void keep(const std::vector<MadeBlock>& blocks);
 
  private:
+  /// The blocks of a node that wait.
+  struct Waiting {
+    std::vector<MadeBlock> blocks;
+    size_t bytes = 0;
+  };
+
   [[nodiscard]] std::string key_of(uint32_t block) const;
   void work();
-  [[nodiscard]] std::optional<MadeBlock> next();
+  [[nodiscard]] std::optional<Waiting> next();
 
   const std::shared_ptr<model::BlockCache> cache_;
   const std::string identity_;
   const int color_bits_;
   const std::vector<model::ScalarColumn> scalars_;
+  const size_t most_waiting_;
   mutable std::mutex mutex_;  ///< guards what follows
   std::condition_variable wake_;
-  std::deque<MadeBlock> queue_;
+  std::deque<Waiting> queue_;
+  size_t waiting_bytes_ = 0;  ///< with the node whose blocks are being coded
   bool stopping_ = false;
   std::jthread thread_;
 };

@@ -17,6 +17,8 @@ namespace {
 
 /// Of the memory: points of nodes, which are needed again below; the rest is for blocks.
 constexpr size_t kPointsShare = 2;
+/// The same, and not a part of it: blocks that wait to be written to this disk.
+constexpr size_t kWaitingShare = 4;
 
 /// Counts up when blocks are made in another way: those on disk are made anew then.
 constexpr int kMakerVersion = 5;
@@ -62,7 +64,7 @@ TreeBlocks::TreeBlocks(TreeFrame frame, size_t memory, std::shared_ptr<model::Bl
   std::string identity = identity_of(*frame_.opened.reader);
   if (cache && !identity.empty()) {
     keeper_ = std::make_unique<BlockKeeper>(std::move(cache), std::move(identity), frame_.meaning.schema.color_bits,
-                                            columns_);
+                                            columns_, memory / kWaitingShare);
   }
   std::shared_ptr<const Blocks> blocks = take(root_blocks);
   blocks_.put(0, blocks, bytes_of_blocks(*blocks));
