@@ -85,9 +85,10 @@ TEST(PointTreeLeaves, BlocksOfANodeAreMadeTogether) {
   std::map<uint64_t, std::vector<ldc::OctreeKey>> cells;
   for (uint32_t i = 0; i < model->blocks().size(); ++i) cells[model->unit_of(i)].push_back(model->blocks()[i].key);
   EXPECT_LT(cells.size(), model->blocks().size());
-  for (const auto& [unit, keys] : cells) {
+  for (const auto& cell : cells) {
+    const std::vector<ldc::OctreeKey>& keys = cell.second;
     const bool leaves = std::ranges::all_of(keys, [&](const ldc::OctreeKey& key) { return key == keys.front(); });
-    EXPECT_TRUE(unit == 0 || leaves) << unit;
+    EXPECT_TRUE(cell.first == 0 || leaves) << cell.first;
   }
 }
 
