@@ -6,8 +6,7 @@
 namespace surfcast::selection {
 namespace {
 
-/// Surfels of a block that are kept, at most. A block two levels finer, an eighth as large along each side, has some
-/// sixty of them.
+/// Surfels of a block that are kept, at most. A block of an eighth of its side has some sixty of them.
 constexpr size_t kMostSamples = 4096;
 /// In a box with fewer surfels, their share is left to chance.
 constexpr size_t kFewSamples = 16;
