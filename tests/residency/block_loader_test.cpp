@@ -53,6 +53,24 @@ TEST_F(BlockLoaderTest, RequestsArePrefetchedOnceSoThatTheDiskIsAheadOfTheDecode
   EXPECT_THAT(source_->prefetched(), ElementsAre(1, 2, 3, 4, 7)) << "2 is in host memory";
 }
 
+TEST_F(BlockLoaderTest, SourcesAreToldOfTheFirstRequestsAlone) {
+  source_->hold();
+  const auto request = [&](const std::vector<uint32_t>& blocks) { loader_.set_requests(source_, blocks, false, 2); };
+  request({1, 2, 3, 4});
+  source_->wait_for_start(1);
+  EXPECT_THAT(source_->prefetched(), ElementsAre(1, 2));
+  request({2, 3, 4});
+  EXPECT_THAT(source_->prefetched(), ElementsAre(1, 2, 3)) << "each once";
+  request({4});
+  EXPECT_THAT(source_->forgotten(), ElementsAre(2, 3));
+  request({5, 6, 7});
+  EXPECT_THAT(source_->forgotten(), ElementsAre(2, 3, 4));
+  request({8});
+  EXPECT_THAT(source_->forgotten(), ElementsAre(2, 3, 4, 5, 6)) << "of 7 it was not told";
+  source_->release();
+  EXPECT_THAT(take(1), ElementsAre(8));
+}
+
 TEST_F(BlockLoaderTest, SourcesAreToldWhatIsNotWantedAnyMore) {
   source_->hold();
   set_requests({1, 2, 3, 4});

@@ -60,10 +60,10 @@ BlockLoader::~BlockLoader() {
 }
 
 void BlockLoader::set_requests(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
-                               bool attributes) {
+                               bool attributes, size_t announced) {
   {
     const std::lock_guard lock(mutex_);
-    const std::set<BlockId> known = std::exchange(requested_, {});
+    requested_.clear();
     for (const uint32_t block : blocks) requested_.insert({source->id(), block, attributes});
     forget_queued();
     drop_unwanted();
@@ -74,10 +74,11 @@ void BlockLoader::set_requests(const std::shared_ptr<const BlockSource>& source,
       const BlockId id{source->id(), block, attributes};
       if (!coming.insert(id).second) continue;
       if (std::shared_ptr<const PackedBlock> cached = cache_.find(id)) {
+        if (announced_.erase(id) > 0) source->forget(block);  // an idle thread has loaded it
         make_ready({id, std::move(cached), 0});
       } else {
         queue_.push_back({source, id});
-        if (!known.contains(id)) fresh.push_back(block);
+        if (queue_.size() <= announced && announced_.insert(id).second) fresh.push_back(block);
       }
     }
     // The disk or the store reads these blocks while the first ones are decoded.
@@ -107,7 +108,7 @@ void BlockLoader::prefetch(const std::shared_ptr<const BlockSource>& source, std
 /// Empties the queue, and tells the sources which of its blocks are not requested any more.
 void BlockLoader::forget_queued() {
   for (const Request& request : std::exchange(queue_, {})) {
-    if (!requested_.contains(request.id)) request.source->forget(request.id.block);
+    if (!requested_.contains(request.id) && announced_.erase(request.id) > 0) request.source->forget(request.id.block);
   }
 }
 
@@ -201,6 +202,7 @@ void BlockLoader::work() {
     if (stopping_) return;
     const Request request = std::move(*next);
     queue_.erase(next);
+    announced_.erase(request.id);
     const Unit unit = unit_of(request);
     busy_.insert(request.id);
     busy_units_.insert(unit);

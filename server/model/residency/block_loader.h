@@ -3,6 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -43,10 +44,13 @@ class BlockLoader {
   BlockLoader(const BlockLoader&) = delete;
   BlockLoader& operator=(const BlockLoader&) = delete;
 
+  static constexpr size_t kAll = std::numeric_limits<size_t>::max();
+
   /// Replaces the requests, most urgent first, all with attributes or all without. Blocks that are currently being
-  /// decoded are finished; if they are no longer requested, they are kept in host memory.
+  /// decoded are finished; if they are no longer requested, they are kept in host memory. The source is told of the
+  /// first `announced` blocks that are to be loaded.
   void set_requests(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
-                    bool attributes = false);
+                    bool attributes = false, size_t announced = kAll);
   /// Replaces the list of blocks that may be requested soon, most urgent first. The list is cut off at half of the host
   /// memory for blocks.
   void prefetch(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks, bool attributes);
@@ -87,6 +91,7 @@ class BlockLoader {
   std::set<BlockId> prefetching_;       ///< prefetched blocks being decoded
   std::set<BlockId> damaged_prefetches_;
   std::set<BlockId> requested_;  ///< requests whose blocks have not been taken
+  std::set<BlockId> announced_;  ///< requests in the queue of which the source was told
   std::set<BlockId> busy_;       ///< requested blocks being decoded
   std::set<Unit> busy_units_;    ///< of these
   std::deque<LoadedBlock> ready_;

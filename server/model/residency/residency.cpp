@@ -243,9 +243,12 @@ void Residency::prefetch_rest(const ViewedModel& model, const ViewParameters& pa
 }
 
 /// A picture that lacks nothing leaves the loading of other models going: a preview of a scan that of its model.
-void Residency::request(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes) {
+void Residency::request(const ViewedModel& model, std::span<const uint32_t> blocks, const ViewParameters& parameters) {
+  // In motion the list changes before the loaders come to its end.
+  constexpr size_t kAnnouncedInMotion = 64;
   if (blocks.empty() && requested_model_ != model.source->id()) return;
-  loader_.set_requests(model.source, blocks, attributes);
+  loader_.set_requests(model.source, blocks, parameters.attributes,
+                       parameters.moving ? kAnnouncedInMotion : BlockLoader::kAll);
   requested_model_ = model.source->id();
 }
 
@@ -267,7 +270,7 @@ PreparedView Residency::prepare_resident(const ViewedModel& model, const ViewPar
   view.nothing_pending = blocks.empty();
   view.missing = static_cast<uint32_t>(blocks.size());
   if (ahead) add_requests_ahead(model, parameters, view.selection, *ahead, blocks);
-  request(model, blocks, parameters.attributes);
+  request(model, blocks, parameters);
   prefetch_rest(model, parameters);
   view.select_ms = watch.milliseconds() - view.upload_ms;
   return view;

@@ -117,7 +117,7 @@ class Residency {
   void add_requests_ahead(const ViewedModel& model, const ViewParameters& parameters,
                           const selection::BlockSelection& selection, const geometry::CameraFrame& ahead,
                           std::vector<uint32_t>& blocks) const;
-  void request(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes);
+  void request(const ViewedModel& model, std::span<const uint32_t> blocks, const ViewParameters& parameters);
   void prefetch_rest(const ViewedModel& model, const ViewParameters& parameters);
   Status load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes, const Preemption& preemption,
               PreparedView& view);
