@@ -502,7 +502,7 @@ TEST(SelectBlocks, WhatHasNoSurfelThatIsSeenIsNotRefined) {
   criteria.spacing = 0.5 * projected_spacing(blocks.blocks()[1], frame);
   criteria.visible = &visible;
   EXPECT_THAT(select_blocks(tree, frame, criteria, all_of(blocks)).refined, ElementsAre(0, 1, 2, 3, 4));
-  visible.enter(0, centres);
+  visible.enter(0, centres.size(), [&](size_t i) { return centres[i]; });
   EXPECT_THAT(select_blocks(tree, frame, criteria, all_of(blocks)).refined, ElementsAre(0, 3));
 }
 

@@ -39,9 +39,13 @@ geometry::Box tall_box(double z) {
   return box;
 }
 
+void enter(uint32_t block, const std::vector<glm::dvec3>& centres, Visibility& visibility) {
+  visibility.enter(block, centres.size(), [&](size_t i) { return centres[i]; });
+}
+
 double share_of(const std::vector<glm::dvec3>& centres, const geometry::Box& box) {
   Visibility visibility(wall_on_the_left(), kView, 0);
-  visibility.enter(7, centres);
+  enter(7, centres, visibility);
   return visibility.share_of(box, 0, visibility.index_of(7));
 }
 
@@ -92,7 +96,7 @@ TEST(Visibility, SurfelsJustOutsideThePictureCountAsItsBorder) {
   Visibility visibility(wall_on_the_left(), kView, 8);
   std::vector<glm::dvec3> outside;  // 4 pixels beyond the right border
   for (int i = 0; i < 100; ++i) outside.emplace_back(40 * 54.0 / 50, 0, -40);
-  visibility.enter(0, outside);
+  enter(0, outside, visibility);
   geometry::Box box = tall_box(40);
   box.max.x = 50;
   EXPECT_GT(visibility.share_of(box, 0, 0), 0.4);
@@ -105,7 +109,7 @@ TEST(Visibility, IsExactFarFromTheOrigin) {
   Visibility visibility(wall_on_the_left(), frame, 0);
   std::vector<glm::dvec3> centres = row_at(40, 900, 100);
   for (glm::dvec3& centre : centres) centre += far;
-  visibility.enter(0, centres);
+  enter(0, centres, visibility);
   geometry::Box box = tall_box(40);
   box.min += far;
   box.max += far;

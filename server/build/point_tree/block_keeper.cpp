@@ -2,12 +2,12 @@
 
 #include <set>
 #include <span>
-#include <variant>
 
 #include "base/idle_priority.h"
 #include "model/block_encoder.h"
 #include "model/byte_stream.h"
 #include "model/format.h"
+#include "point_tree/columns.h"
 
 namespace surfcast::point_tree {
 namespace {
@@ -15,10 +15,7 @@ namespace {
 size_t bytes_of(const surfel::SurfelCloud& cloud) {
   size_t each = sizeof(glm::dvec3) + sizeof(glm::vec3) + 2 * sizeof(float) + 1;
   if (cloud.colors) each += sizeof(glm::u16vec3);
-  for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
-    each += std::visit([](const auto& values) { return sizeof(values[0]); }, scalar.values);
-  }
-  return each * cloud.size();
+  return (each + bytes_of_scalars(cloud.scalars)) * cloud.size();
 }
 
 /// Of blocks with their clouds, which several of them share.

@@ -44,4 +44,13 @@ void append_points(const From& from, std::span<const uint32_t> rows, Points& to)
   for (size_t i = 0; i < from.scalars.size(); ++i) append_rows(from.scalars[i].values, rows, to.scalars[i].values);
 }
 
+/// Bytes of the attributes of one point.
+inline size_t bytes_of_scalars(std::span<const surfel::ScalarAttribute> scalars) {
+  size_t bytes = 0;
+  for (const surfel::ScalarAttribute& scalar : scalars) {
+    bytes += std::visit([](const auto& values) { return sizeof(values[0]); }, scalar.values);
+  }
+  return bytes;
+}
+
 }  // namespace surfcast::point_tree

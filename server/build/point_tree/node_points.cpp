@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 #include <utility>
-#include <variant>
 
 #include "base/invalid_input.h"
 #include "estimation/clean_points.h"
@@ -44,10 +43,7 @@ size_t NodePoints::bytes() const {
   if (!points.normals.empty()) each += sizeof(glm::vec3);
   if (!points.radii.empty()) each += sizeof(float);
   if (points.colors) each += sizeof(glm::u16vec3);
-  for (const surfel::ScalarAttribute& scalar : points.scalars) {
-    each += std::visit([](const auto& values) { return sizeof(values[0]); }, scalar.values);
-  }
-  return each * codes.size();
+  return (each + bytes_of_scalars(points.scalars)) * codes.size();
 }
 
 Result<scan::TableMeaning> decide_meaning(const NodeReader& reader, const scan::PointTable& root) {

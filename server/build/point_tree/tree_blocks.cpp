@@ -4,13 +4,13 @@
 #include <iterator>
 #include <set>
 #include <utility>
-#include <variant>
 
 #include <oneapi/tbb/task_arena.h>
 
 #include "base/contract.h"
 #include "ldc/coarse_scalars.h"
 #include "model/block_encoder.h"
+#include "point_tree/columns.h"
 
 namespace surfcast::point_tree {
 namespace {
@@ -26,10 +26,7 @@ constexpr int kMakerVersion = 5;
 size_t bytes_of_block(const model::DecodedBlock& block) {
   size_t each = sizeof(glm::ivec3) + sizeof(glm::vec3) + 2 * sizeof(float) + (block.scatter.empty() ? 0 : 1) +
                 (block.colors.empty() ? 0 : sizeof(glm::u16vec3));
-  for (const surfel::ScalarAttribute& scalar : block.scalars) {
-    each += std::visit([](const auto& values) { return sizeof(values[0]); }, scalar.values);
-  }
-  return sizeof(block) + each * block.size();
+  return sizeof(block) + (each + bytes_of_scalars(block.scalars)) * block.size();
 }
 
 size_t bytes_of_blocks(const std::vector<model::DecodedBlock>& blocks) {

@@ -409,9 +409,10 @@ Result<RegionStats> Renderer::State::draw_survey(const Part& part, residency::Pr
   if (!drawn) return drawn;
   const auto visible = std::make_shared<selection::Visibility>(std::move(depths), part.frame, spacing);
   for (const uint32_t block : view.selection.draw) {
-    const auto centres = residency.centres(part.scene.viewed(), block, part.display.attributes);
-    if (!centres) return fail(centres);
-    visible->enter(block, *centres);
+    const auto packed = residency.packed(part.scene.viewed(), block, part.display.attributes);
+    if (!packed) return fail(packed);
+    const residency::BlockHeader& header = *(**packed).header;
+    visible->enter(block, header.centres(**packed), [&](size_t i) { return header.centre(**packed, i); });
   }
   part.scene.surveys().keep(part.shown(), visible);
   Result<residency::PreparedView> next = prepare(part);

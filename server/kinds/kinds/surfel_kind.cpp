@@ -49,16 +49,17 @@ class SurfelHeader : public residency::BlockHeader {
     }
   }
 
-  void add_centres(const residency::PackedBlock& block, std::vector<glm::dvec3>& centres) const override {
-    const size_t each = (flags_ & SURFCAST_RUN_CURVED) != 0 ? 2 : 1;
-    centres.reserve(centres.size() + block.texels.size() / each);
-    for (size_t i = 0; i < block.texels.size(); i += each) {
-      const glm::uvec3 code = glm::uvec3(block.texels[i]) & glm::uvec3(SURFCAST_POSITION_MASK);
-      centres.push_back(block.lattice.position(code));
-    }
+  [[nodiscard]] size_t centres(const residency::PackedBlock& block) const override {
+    return block.texels.size() / texels_of_surfel();
+  }
+  [[nodiscard]] glm::dvec3 centre(const residency::PackedBlock& block, size_t i) const override {
+    const glm::uvec3 code = glm::uvec3(block.texels[i * texels_of_surfel()]) & glm::uvec3(SURFCAST_POSITION_MASK);
+    return block.lattice.position(code);
   }
 
  private:
+  [[nodiscard]] size_t texels_of_surfel() const { return (flags_ & SURFCAST_RUN_CURVED) != 0 ? 2 : 1; }
+
   residency::LogScale radius_;
   residency::LogScale weight_;
   uint32_t flags_;  ///< of all its runs

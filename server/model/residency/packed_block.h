@@ -49,8 +49,10 @@ class BlockHeader {
   [[nodiscard]] virtual glm::vec4 scale(int unit) const = 0;
   /// Appends the runs of texels that may be visible in a picture that requests radii in this range.
   virtual void add_runs(const selection::RadiusRange& wanted, std::vector<TexelRun>& runs) const = 0;
-  /// Appends the centres of the items, or of some of them, world units; none by default. `block`: that of the header.
-  virtual void add_centres(const PackedBlock& block, std::vector<glm::dvec3>& centres) const;
+  /// The number of items whose centres the kind tells; none by default. `block`: that of the header.
+  [[nodiscard]] virtual size_t centres(const PackedBlock& /*block*/) const { return 0; }
+  /// One of these centres, world units.
+  [[nodiscard]] virtual glm::dvec3 centre(const PackedBlock& /*block*/, size_t /*i*/) const { return glm::dvec3(0); }
 };
 
 /// The largest number of texels of a block per item.
@@ -69,7 +71,5 @@ struct PackedBlock {
     return texels.size() * sizeof(glm::uvec4) + attributes.size() * sizeof(uint32_t);
   }
 };
-
-inline void BlockHeader::add_centres(const PackedBlock& /*block*/, std::vector<glm::dvec3>& /*centres*/) const {}
 
 }  // namespace surfcast::residency

@@ -155,14 +155,12 @@ Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const
   return view;
 }
 
-Result<std::vector<glm::dvec3>> Residency::centres(const ViewedModel& model, uint32_t block, bool attributes) {
-  const auto centres_of = [](const PackedBlock& packed) {
-    std::vector<glm::dvec3> centres;
-    packed.header->add_centres(packed, centres);
-    return centres;
-  };
-  if (const auto kept = loader_.find({model.source->id(), block, attributes})) return centres_of(*kept);
-  return model.source->load(block, attributes).map(centres_of);
+Result<std::shared_ptr<const PackedBlock>> Residency::packed(const ViewedModel& model, uint32_t block,
+                                                             bool attributes) {
+  if (auto kept = loader_.find({model.source->id(), block, attributes})) return kept;
+  return model.source->load(block, attributes).map([](PackedBlock&& loaded) {
+    return std::make_shared<const PackedBlock>(std::move(loaded));
+  });
 }
 
 /// Stores loaded blocks, up to the limit. Returns the number of blocks stored.

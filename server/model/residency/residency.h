@@ -91,9 +91,9 @@ class Residency {
   void begin_nested_frame() { pool_.begin_nested_frame(); }
   void end_nested_frame() { pool_.end_nested_frame(); }
 
-  /// The centres of the items of a block, as far as its kind tells them, world units. A block that is not in host
-  /// memory is loaded again.
-  [[nodiscard]] Result<std::vector<glm::dvec3>> centres(const ViewedModel& model, uint32_t block, bool attributes);
+  /// A block as it is drawn. One that is not in host memory is loaded again.
+  [[nodiscard]] Result<std::shared_ptr<const PackedBlock>> packed(const ViewedModel& model, uint32_t block,
+                                                                  bool attributes);
 
   [[nodiscard]] const BlockPool& pool() const { return pool_; }
   void release_model(uint64_t model);

@@ -13,14 +13,14 @@ constexpr size_t kFewSamples = 16;
 
 }  // namespace
 
-void Visibility::enter(uint32_t block, std::span<const glm::dvec3> centres) {
+void Visibility::enter(uint32_t block, size_t surfels, const std::function<glm::dvec3(size_t)>& centre) {
   indices_.emplace(block, static_cast<uint32_t>(blocks_.size()));
   std::vector<Sample>& samples = blocks_.emplace_back();
-  const size_t kept = std::min(centres.size(), kMostSamples);
+  const size_t kept = std::min(surfels, kMostSamples);
   samples.reserve(kept);
   for (size_t i = 0; i < kept; ++i) {
-    const glm::dvec3& centre = centres[i * centres.size() / kept];
-    samples.push_back({glm::vec3(centre - frame_.eye), sight_of(centre)});
+    const glm::dvec3 at = centre(i * surfels / kept);
+    samples.push_back({glm::vec3(at - frame_.eye), sight_of(at)});
   }
 }
 

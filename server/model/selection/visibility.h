@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <functional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "geometry/box.h"
@@ -22,9 +23,9 @@ class Visibility {
   Visibility(VisibleDepths depths, const geometry::CameraFrame& frame, double spacing)
       : depths_(std::move(depths)), frame_(frame), spacing_(spacing) {}
 
-  /// Enters a block of the picture with the centres of its surfels, world units. Of many, some are kept, evenly along
-  /// their order.
-  void enter(uint32_t block, std::span<const glm::dvec3> centres);
+  /// Enters a block of the picture. `centre`: of each of its surfels, world units. Of many surfels, some are looked at,
+  /// evenly along their order.
+  void enter(uint32_t block, size_t surfels, const std::function<glm::dvec3(size_t)>& centre);
 
   [[nodiscard]] double spacing() const { return spacing_; }
   /// The index of a block that was entered; kNone of others.
