@@ -43,7 +43,7 @@ layout(std430, binding = SURFCAST_BIND_SHOWN_DEPTHS) writeonly buffer ShownDepth
 // (Eye-dome lighting looks at all surfaces of a pixel, even those that are hardly visible.)
 #define SURFCAST_LEAVES_TO_SAMPLES
 #endif
-#if SURFCAST_ROWS > 1 && !defined(SURFCAST_SELECTS) && !defined(SURFCAST_TOGETHER) && !defined(SURFCAST_BLENDS_BEHIND)
+#if SURFCAST_COLUMNS > 1 && !defined(SURFCAST_SELECTS) && !defined(SURFCAST_TOGETHER) && !defined(SURFCAST_BLENDS_BEHIND)
 // Lanes that hold a tile draw surfaces behind the first one from the entries that have fragments there.
 #define SURFCAST_MARKS
 #endif

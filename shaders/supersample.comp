@@ -3,10 +3,11 @@
 // prefilter of all other pixels.
 //
 // In tiles without large splats a lane draws a part of a tile's pixels: a column is a pixel and its rows are samples.
-// In tiles with large splats (SURFCAST_LARGE) a lane draws one sample, and the lanes of a pixel share their results. So
-// no lane walks over its lists more often than a lane of splat.comp: software GL silently ends the loops of a lane
-// after 65535 iterations in total (see render/tile_spans.h), and the samples after that would be black. The pixels of
-// tiles with long lists are drawn by two more variants (SURFCAST_TOGETHER), with a work group for each part or pixel.
+// In tiles with large splats (SURFCAST_LARGE) a lane draws one pixel in this way, or one sample (SURFCAST_ROWS 1), and
+// the lanes of a pixel share their results. So no lane walks over its lists more often than a lane of splat.comp:
+// software GL silently ends the loops of a lane after 65535 iterations in total (see render/tile_spans.h), and the
+// samples after that would be black. The pixels of tiles with long lists are drawn by two more variants
+// (SURFCAST_TOGETHER), with a work group for each part or pixel.
 #define SURFCAST_SUPERSAMPLED
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
@@ -26,6 +27,15 @@ const bool kLongLists = false;
 #include "include/draw_lane.glsl"
 #include "include/write_rows.glsl"
 
+// A part of the list: some pixels of a tile, or one pixel of a tile with large splats.
+uvec2 part_at(uint index) {
+#ifdef SURFCAST_LARGE
+  return silhouette_parts[silhouettes_end(kLongLists) - 1u - index];
+#else
+  return silhouette_parts[silhouettes_begin(kLongLists) + index];
+#endif
+}
+
 ivec2 corner_of(uint tile) {
   return ivec2(tile % uint(frame.tiles.x), tile / uint(frame.tiles.x)) *
          ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
@@ -43,7 +53,7 @@ void draw_samples(TileLists tile, int wanted, vec2 pixel, out Columns limit, out
 #endif
 }
 
-#ifdef SURFCAST_LARGE
+#if SURFCAST_ROWS == 1
 // Sample i of a pixel, relative to its middle.
 #ifdef SURFCAST_SAMPLES_CURVED
 // Rows and columns at the quartiles' middles of a Gaussian with the samples' variance, turned by atan(1 / 4), so that no
@@ -119,7 +129,7 @@ void main() {
   uint index = (first_group + gl_WorkGroupID.x) * kPixels + lane / uint(SURFCAST_SILHOUETTE_SAMPLES);
   bool listed = index < span.y;
 #endif
-  uvec2 part = listed ? silhouette_parts[silhouettes_end(kLongLists) - 1u - index] : uvec2(0u, 1u);
+  uvec2 part = listed ? part_at(index) : uvec2(0u, 1u);
   ivec2 at = corner_of(part.x) + place_in_tile(findLSB(part.y));
   if (listed) draw_sample(part.x, at, lane);
   barrier();
@@ -139,7 +149,7 @@ void main() {
   uint index = span.x + group * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
   if (index >= span.y) return;
 #endif
-  uvec2 part = silhouette_parts[silhouettes_begin(kLongLists) + index];
+  uvec2 part = part_at(index);
   ivec2 corner = corner_of(part.x);
   ivec2 places[SURFCAST_COLUMNS];
   int count = bitCount(part.y);

@@ -1,5 +1,5 @@
-// Large splats: the exact filter in every pixel. Used only where a lane holds one pixel. Their tile lists also hold the
-// records of other kinds than surfels.
+// Large splats: the exact filter in every pixel. A lane holds one column of pixels. Their tile lists also hold the
+// records of other kinds than surfels; in pictures with them the column is one pixel.
 #include "include/pixel_sums.glsl"
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
@@ -67,48 +67,87 @@ float large_cutoff(LargeSplat s) {
   return cutoff(screen_variance(s.n, s.o.xy / s.o.z, deviation, prefilter_variance()).gain);
 }
 
-// An upper bound of the splat's contribution to a pixel: det S >= prefilter variance^2 bounds the gain.
-float large_peak(LargeSplat s, vec2 ray) {
+// An upper bound of the splat's contribution to a pixel whose ray has this length: det S >= prefilter variance^2 bounds
+// the gain.
+float large_peak(LargeSplat s, float ray_length) {
   float deviation = reaches_eye_plane(s) ? 1e9 : frontal_deviation(kernel_deviation(s), s.o.z);
-  float gain = min(deviation * deviation * length(vec3(ray, 1.0)) / prefilter_variance(), 1.0);
+  float gain = min(deviation * deviation * ray_length / prefilter_variance(), 1.0);
   return s.weight * gain * coverage_scale(gain);
+}
+
+// The rays of the rows of a column.
+#define Rays vec2[SURFCAST_ROWS]
+
+void rays_of_rows(vec2 pixel, out Rays rays) {
+  for (int i = 0; i < SURFCAST_ROWS; ++i) rays[i] = ray_of_pixel(pixel + place_of_row(i));
+}
+
+float longest_of(Rays rays) {
+  float squared = 0.0;
+  for (int i = 0; i < SURFCAST_ROWS; ++i) squared = max(squared, dot(rays[i], rays[i]));
+  return sqrt(squared + 1.0);
 }
 
 #include "kinds/exact_list.glsl"
 
+// Moves the surface of each pixel to the disc of a splat, as see_small does.
+void see_large(LargeSplat s, Rays rays, Rows limit, inout Rows surface) {
+  float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
+  for (int i = 0; i < SURFCAST_ROWS; ++i) {
+    float form = large_form(s, rays[i], disc_radius, disc_prefilter_variance()).x;
+    float z = large_fragment_inverse_depth(s, rays[i]);
+    bool nearer = form <= 1.0 && z < ROW(limit, i);
+    ROW(surface, i) = nearer ? max(ROW(surface, i), large_disc_inverse_depth(s, rays[i])) : ROW(surface, i);
+  }
+}
+
 // Entries from `start` on, with a distance of `stride`.
 void find_surface_large(uint first, uint count, uint start, uint stride, vec2 pixel, Columns limit,
                         inout Columns surface, inout float peak) {
-  vec2 ray = ray_of_pixel(pixel);
+  vec2 rays[SURFCAST_ROWS];
+  rays_of_rows(pixel, rays);
+  float ray_length = longest_of(rays);
   for (uint k = start; k < count; k += stride) {
 #include "kinds/see_entry.glsl"
     LargeSplat s = fetch_large(slot_of(texelFetch(lists, int(first + k)).x));
-    peak = max(peak, large_peak(s, ray));
-    float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
-    float form = large_form(s, ray, disc_radius, disc_prefilter_variance()).x;
-    float z = large_fragment_inverse_depth(s, ray);
-    surface[0] = form <= 1.0 && z < limit[0] ? max(surface[0], large_disc_inverse_depth(s, ray)) : surface[0];
+    peak = max(peak, large_peak(s, ray_length));
+    see_large(s, rays, limit[0], surface[0]);
   }
+}
+
+// The weights of a splat's fragments between `limit` and `surface`, and their inverse depths.
+Rows weights_of_large(LargeSplat s, Rays rays, Rows limit, Rows surface, out Rows z) {
+  float end = large_cutoff(s);
+  float end_weight = rim(end);
+  Rows weights;
+  for (int i = 0; i < SURFCAST_ROWS; ++i) {
+    vec2 form_gain = large_form(s, rays[i], kernel_deviation(s), prefilter_variance());
+    float depth = large_fragment_inverse_depth(s, rays[i]);
+    bool visible = form_gain.x <= end && depth > 0.0 && depth >= ROW(surface, i) && depth < ROW(limit, i);
+    float counted = coverage_gain(s, rays[i], form_gain.y);
+    float weight =
+        s.weight * form_gain.y * coverage_scale(counted) * max(exp(-0.5 * form_gain.x) - end_weight, 0.0);
+    ROW(weights, i) = visible ? weight : 0.0;
+    ROW(z, i) = visible ? depth : ROW(surface, i);
+  }
+  return weights;
 }
 
 void accumulate_large(uint first, uint count, uint start, uint stride, vec2 pixel, Columns limit, Columns surface,
                       float unit, inout ColumnSums sums) {
-  vec2 ray = ray_of_pixel(pixel);
+  vec2 rays[SURFCAST_ROWS];
+  rays_of_rows(pixel, rays);
   for (uint begin = start; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL) * stride) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL) * stride, count);
     for (uint k = begin; k < end; k += stride) {
       int slot = slot_of(texelFetch(lists, int(first + k)).x);
 #include "kinds/add_entry.glsl"
       LargeSplat s = fetch_large(slot);
-      float end = large_cutoff(s);
-      vec2 form_gain = large_form(s, ray, kernel_deviation(s), prefilter_variance());
-      float z = large_fragment_inverse_depth(s, ray);
-      bool visible = form_gain.x <= end && z > 0.0 && z >= surface[0] && z < limit[0];
-      float counted = coverage_gain(s, ray, form_gain.y);
-      float weight = s.weight * form_gain.y * coverage_scale(counted) * max(exp(-0.5 * form_gain.x) - rim(end), 0.0);
-      sums_add(sums[0], splat_value(s.color, slot, unit), visible ? weight : 0.0);
+      Rows z;
+      Rows weights = weights_of_large(s, rays, limit[0], surface[0], z);
+      sums_add(sums[0], splat_value(s.color, slot, unit), weights);
 #ifdef SURFCAST_EYE_DOME
-      sums_add_depth(sums[0], unit, visible ? weight : 0.0, visible ? z : surface[0], surface[0]);
+      sums_add_depth(sums[0], unit, weights, z, surface[0]);
 #endif
     }
     sums_carry(sums[0]);

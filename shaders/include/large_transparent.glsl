@@ -30,7 +30,7 @@ float peak_of_large(TileLists tile, vec2 ray) {
 #include "kinds/peak_seen_through.glsl"
     LargeSplat s = fetch_large(slot);
     float count = unpack_through(texelFetch(discs, slot).w).count;
-    peak = max(peak, max(large_peak(s, ray) * max(1.0, count), s.weight * count));
+    peak = max(peak, max(large_peak(s, length(vec3(ray, 1.0))) * max(1.0, count), s.weight * count));
   }
   return peak;
 }

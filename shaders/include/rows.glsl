@@ -52,6 +52,11 @@ Rows over_rows(vec2 gradient) {
 #endif
 }
 
+// The place of row i relative to the first row, or to the middle of the samples.
+vec2 place_of_row(int i) {
+  return vec2(ROW(over_rows(vec2(1.0, 0.0)), i), ROW(over_rows(vec2(0.0, 1.0)), i));
+}
+
 // The larger and the smaller of two numbers, at least one of which is not negative: then the order of their bits as
 // integers is the same. The built-in functions take three instructions in software, because they handle NaN.
 Rows larger(Rows a, Rows b) { return intBitsToFloat(max(floatBitsToInt(a), floatBitsToInt(b))); }

@@ -145,6 +145,15 @@ KindFragments fragments_of(const Variant& variant, const PictureKinds& kinds) {
   return fragments;
 }
 
+/// Pixels, or samples of a pixel, that a lane draws in tiles with large splats. With software GL, where fetches cost
+/// most, they share those of a splat. Records of other kinds are evaluated for one ray at a time, and surfaces that are
+/// seen through are drawn pixel by pixel.
+int rows_of_large(const KernelShape& shape, const Variant& variant, const KindFragments& fragments) {
+  const bool alone = !shape.whole_tiles || variant.transparent || !fragments.names.empty();
+  return alone ? 1 : SURFCAST_TILE_HEIGHT;
+}
+static_assert(SURFCAST_TILE_HEIGHT == SURFCAST_SILHOUETTE_SAMPLES);
+
 }  // namespace
 
 Result<Programs> Programs::create(const KernelShape& shape, const std::string& defines) {
@@ -374,20 +383,23 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   const std::string splat = splat_defines(variant);
   const std::string at_once = splat + define("SURFCAST_TILES_AT_ONCE", shape_.tiles_at_once);
   const std::string small = at_once + lane_defines(shape_.whole_tiles);
-  const std::string large = at_once + lane_defines(false) + "#define SURFCAST_LARGE\n";
+  const int large_rows = rows_of_large(shape_, variant, fragments);
+  const std::string large = "#define SURFCAST_LARGE\n" + define("SURFCAST_COLUMNS", 1);
   const std::string kept = kept_defines(variant);
   const std::string selecting = selects(variant) ? "#define SURFCAST_SELECTS\n" : "";
   const char* kernel = tile_kernel(variant);
   Status status = compile(programs.splat, plain(kernel), small + kept + selecting);
-  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + kept);
+  if (status)
+    status =
+        compile(programs.splat_large, with_kinds(kernel), at_once + large + define("SURFCAST_ROWS", large_rows) + kept);
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);
     if (status) status = compile(programs.silhouettes, plain("silhouettes.comp"), columns + samples_define(variant));
     if (status) status = compile(programs.supersample, plain("supersample.comp"), splat + columns + rows + selecting);
-    const std::string large_samples = large + samples_define(variant);
+    const std::string large_samples = at_once + large + define("SURFCAST_ROWS", large_rows) + samples_define(variant);
     if (status) status = compile(programs.supersample_large, with_kinds("supersample.comp"), large_samples);
-    programs.samples_of_large = samples_of_large(variant);
+    programs.lanes_of_large_pixel = samples_of_large(variant) / large_rows;
   }
   if (status && selects(variant) && !variant.transparent) {
     const std::string column = at_once + define("SURFCAST_COLUMNS", 1) + define("SURFCAST_ROWS", SURFCAST_TILE_HEIGHT);

@@ -74,8 +74,8 @@ struct SplatPrograms {
   const gl::Program* silhouettes = nullptr;
   const gl::Program* supersample = nullptr;
   const gl::Program* supersample_large = nullptr;
-  int samples_of_large = SURFCAST_SILHOUETTE_SAMPLES;  ///< of a pixel in tiles with large splats
-  const gl::Program* eye_dome = nullptr;               ///< null without eye-dome lighting
+  int lanes_of_large_pixel = 1;           ///< of the last one
+  const gl::Program* eye_dome = nullptr;  ///< null without eye-dome lighting
 };
 
 /// The mapping of the passes to the device's vectors. It does not affect pictures.

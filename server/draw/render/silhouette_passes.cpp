@@ -64,7 +64,7 @@ Status supersample_silhouettes(const RegionTask& task, const layout::Counters& c
   };
   LongListBatches& sizers = buffers.long_lists;
   Status status = draw(programs.lanes.supersample_large, counts.y,
-                       shape.silhouette_lanes / programs.lanes.samples_of_large, buffers.supersample_large_batches);
+                       shape.silhouette_lanes / programs.lanes.lanes_of_large_pixel, buffers.supersample_large_batches);
   if (status) status = draw(programs.groups.supersample, counts.z, 1, sizers.supersample);
   if (status) status = draw(programs.groups.supersample_large, counts.w, 1, sizers.supersample_large);
   return status;
