@@ -192,7 +192,7 @@ TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
     if (worth) {
       const double draw_ms = model.draw_ms * come / model.blocks;
       now_ += std::chrono::microseconds(static_cast<long>(1000 * draw_ms));
-      plan_.record_draw(draw_ms, missing, now_);
+      plan_.record_draw(draw_ms, come, missing, now_);
       work_ms += draw_ms;
       ++drawn_frames;
     }
@@ -209,12 +209,12 @@ TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
 
 TEST_F(ViewPlanTest, AFrameThatShowsLittleMoreIsNotDrawn) {
   update(/*moving=*/false);
-  plan_.record_draw(/*draw_ms=*/100, /*missing=*/40, now_);
+  plan_.record_draw(/*draw_ms=*/100, /*blocks=*/2000, /*missing=*/40, now_);
   pass(199);
   EXPECT_EQ(max_missing_blocks(30), 0u) << "only with all that are to come";
   pass(1);
   EXPECT_EQ(max_missing_blocks(30), 30u);
-  plan_.record_draw(100, 1, now_);
+  plan_.record_draw(100, 2000, 1, now_);
   pass(200);
   EXPECT_EQ(max_missing_blocks(1), 1u);
 }
@@ -251,7 +251,7 @@ TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsForAllBlocksThatComeSoon) {
   EXPECT_EQ(max_missing_blocks(510), kAny) << "190 in 1000 ms: 510 more take too long";
   pass(1000);
   EXPECT_EQ(max_missing_blocks(100), 0u) << "600 in 2000 ms: the last 100 take 333 ms";
-  plan_.record_draw(/*draw_ms=*/100, /*missing=*/0, now_);
+  plan_.record_draw(/*draw_ms=*/100, /*blocks=*/2000, /*missing=*/0, now_);
   update(/*moving=*/false);
   EXPECT_EQ(max_missing_blocks(700), 0u);
   pass(600);
@@ -266,11 +266,25 @@ TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsForAllBlocksThatComeSoon) {
 
 TEST_F(ViewPlanTest, BlocksThatComeSoonerThanAFrameIsDrawnAreWaitedFor) {
   update(/*moving=*/false);
-  plan_.record_draw(/*draw_ms=*/500, /*missing=*/700, now_);
+  plan_.record_draw(/*draw_ms=*/500, /*blocks=*/2000, /*missing=*/700, now_);
   pass(1200);
   EXPECT_EQ(max_missing_blocks(100), 0u) << "600 in 1200 ms: the last 100 take 200 ms";
   EXPECT_EQ(max_missing_blocks(400), 525u) << "300 in 1200 ms: 400 more take 1600 ms";
   EXPECT_EQ(max_missing_blocks(700), 525u) << "none came";
+}
+
+TEST_F(ViewPlanTest, APictureOfMoreBlocksThanItsSurveyIsExpectedToTakeLonger) {
+  update(/*moving=*/false);
+  plan_.record_draw(/*draw_ms=*/400, /*blocks=*/100, /*missing=*/60, now_);
+  pass(1199);
+  EXPECT_EQ(max_missing_blocks(30, 150), 0u) << "600 ms, two of them pass first";
+  pass(1);
+  EXPECT_EQ(max_missing_blocks(29, 150), 0u) << "31 in 1200 ms: 29 more come sooner than the picture is drawn";
+  EXPECT_EQ(max_missing_blocks(30, 150), 45u);
+  pass(399);
+  EXPECT_EQ(max_missing_blocks(45, 10000), 0u) << "800 ms: pixels take their time whatever covers them";
+  pass(1);
+  EXPECT_EQ(max_missing_blocks(45, 10000), 45u);
 }
 
 TEST_F(ViewPlanTest, BlocksThatArriveSlowlyAreNotGivenUp) {

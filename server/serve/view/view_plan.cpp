@@ -130,10 +130,11 @@ void ViewPlan::finish(uint64_t frame, FrameResult result, ViewTime now) {
   }
 }
 
-void ViewPlan::record_draw(double draw_ms, uint32_t missing, ViewTime now) {
+void ViewPlan::record_draw(double draw_ms, uint32_t blocks, uint32_t missing, ViewTime now) {
   drawn_ = true;
   drawn_at_ = now;
   draw_ms_ = draw_ms;
+  drawn_blocks_ = blocks;
   drawn_missing_ = missing;
 }
 
@@ -169,13 +170,22 @@ uint32_t ViewPlan::max_missing_before_first_draw(ViewTime now) const {
   return to_wait.count() <= worth_ms ? 0 : kAny;
 }
 
+/// The drawing time of the picture with all of its blocks. The last frame had fewer of them if it was a survey, or the
+/// first one. Pixels take their share of the time whatever covers them, so few blocks are no small part of it.
+double ViewPlan::whole_draw_ms() const {
+  constexpr double kMost = 2;
+  const double times = static_cast<double>(last_sample_.blocks) / std::max(drawn_blocks_, 1U);
+  return draw_ms_ * std::clamp(times, 1.0, kMost);
+}
+
 uint32_t ViewPlan::max_missing_blocks(ViewTime now) const {
   if (!drawn_) return max_missing_before_first_draw(now);
   const uint32_t missing = last_sample_.missing;
   const double since_ms = std::chrono::duration<double, std::milli>(now - drawn_at_).count();
-  if (since_ms < kPauses * draw_ms_) return 0;
+  const double worth_ms = kPauses * whole_draw_ms();
+  if (since_ms < worth_ms) return 0;
   const double come = missing < drawn_missing_ ? drawn_missing_ - missing : 0;
-  const bool rest_comes_soon = since_ms * missing < kPauses * draw_ms_ * come;
+  const bool rest_comes_soon = since_ms * missing < worth_ms * come;
   return rest_comes_soon ? 0 : drawn_missing_ - drawn_missing_ / 4;
 }
 

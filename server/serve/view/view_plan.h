@@ -79,8 +79,8 @@ class ViewPlan {
   /// Whether the motion frame that is to be drawn now is tried from the newer edition.
   [[nodiscard]] bool may_try_takeover(ViewTime now) const { return successor_ && now >= next_try_at_; }
   void try_takeover(ViewTime now) { next_try_at_ = now + timing_.takeover_try; }
-  /// A frame at rest of the newest picture was drawn in `draw_ms`, with `missing` blocks missing.
-  void record_draw(double draw_ms, uint32_t missing, ViewTime now);
+  /// A frame at rest of the newest picture was drawn in `draw_ms`, from `blocks` blocks, with `missing` missing.
+  void record_draw(double draw_ms, uint32_t blocks, uint32_t missing, ViewTime now);
   /// The newest picture, of so many blocks, now has `missing` blocks missing.
   void record_missing(uint32_t missing, uint32_t blocks, ViewTime now);
   /// The most missing blocks with which a frame at rest is worth drawing while they are still loading. A frame of a
@@ -109,6 +109,7 @@ class ViewPlan {
   [[nodiscard]] const Job* find(uint64_t frame) const;
   [[nodiscard]] bool room_for_motion() const;
   [[nodiscard]] uint32_t max_missing_before_first_draw(ViewTime now) const;
+  [[nodiscard]] double whole_draw_ms() const;
   [[nodiscard]] std::optional<ViewTime> due(ViewTime rest) const;
   [[nodiscard]] FrameKind wanted() const;
 
@@ -133,6 +134,7 @@ class ViewPlan {
   bool drawn_ = false;  ///< a frame at rest of the newest picture has been drawn
   ViewTime drawn_at_;   ///< when the last such frame was drawn; its duration and missing blocks follow
   double draw_ms_ = 0;
+  uint32_t drawn_blocks_ = 0;
   uint32_t drawn_missing_ = 0;  ///< by the last frame at rest
   std::vector<Job> jobs_;       ///< oldest first
   size_t motion_unacknowledged_ = 0;

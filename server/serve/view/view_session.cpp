@@ -392,7 +392,7 @@ void ViewSession::record_progress(service::EncodedPicture& picture, ViewTime now
   plan_.record_missing(missing, picture.stats.blocks_selected, now);
   if (!picture.bytes.empty()) {
     displayed_cut_ = picture.cut;
-    plan_.record_draw(picture.draw_ms, missing, now);
+    plan_.record_draw(picture.draw_ms, picture.stats.blocks_drawn, missing, now);
     if (picture.converged && picture.nothing_pending) finished_frame_ = std::move(picture.frame);
   }
   picture.frame.reset();
