@@ -20,7 +20,7 @@
 // `rest`: instead, a movement ends after a second. PSNR of what is shown at instants after that, by a client that shows
 // whole frames only, and by one that shows early ones too (client::View::Frame::whole).
 //
-// `scales`: instead, PSNR of clients that warp with all pixels, three quarters and half of the width and height.
+// `scales`: instead, PSNR of clients that warp with fewer pixels, and the newest frame alone.
 
 #include <algorithm>
 #include <array>
@@ -86,8 +86,14 @@ bool counts(const picture::Image& image) {
   return covered > image.pixels.size() / 4 / 50;
 }
 
+/// How a client warps.
+struct Warping {
+  double scale = 1;     ///< factor on width and height
+  bool layered = true;  ///< the frame at rest is drawn over the newest one
+};
+
 Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path& path, const Truth& truth,
-             double scale = 1) {
+             const Warping& warping = {}) {
   Judged judged;
   const auto count = static_cast<double>(frames.size() - 1);
   for (const Arrived& frame : std::span(frames).subspan(1)) {
@@ -109,9 +115,9 @@ Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path
     const geometry::CameraFrame target =
         value_or_exit(geometry::make_camera_frame(path.at(begin, now), kWidth, kHeight));
     const bool warps = !shown.mesh.empty();
-    const warp::WarpFrame* below = newest > 0 && !rest.mesh.empty() ? &rest : nullptr;
+    const warp::WarpFrame* other = newest > 0 && !rest.mesh.empty() && warping.layered ? &rest : nullptr;
     judged.figures.push_back(bench::compare(
-        warps ? bench::warped_at(scale, shown, below, target) : bench::unwarped(shown, target), truth[i]));
+        warps ? bench::warped_at(warping.scale, shown, other, target) : bench::unwarped(shown, target), truth[i]));
   }
   return judged;
 }
@@ -304,15 +310,19 @@ class Lab {
   }
 
   void run_scales() {
-    std::printf("\n| %s | link | 1: frames/s, KB/s, width | dB, worst tenth / %% off | 0.75 | | 0.5 | |\n",
-                name_.c_str());
+    // Those between which the viewer chooses (client/web/src/view/warp_quality.ts).
+    constexpr Warping kWarpings[] = {{1, true}, {0.75, true}, {0.5, true}, {0.375, true}, {0.5, false}, {0.375, false}};
+    std::printf(
+        "\n| %s | link | 1: frames/s, KB/s, width | dB, worst tenth / %% off | 0.75 | | 0.5 | | 0.375 | | "
+        "0.5, newest alone | | 0.375, newest alone | |\n",
+        name_.c_str());
     for (const Path& path : bench::paths()) {
       const Truth truth = truth_of(path, 0, kSeconds, kEvery);
       for (const Link& link : links_) {
         const testing::LinkRelay relay(server_, shape_of(link));
         std::printf("| %s | %.0f Mbit/s, %d ms |", path.name.c_str(), link.megabits, link.round_trip);
         const auto frames = play({relay.port(), name_, begin_, {fps_, true}}, path, kSeconds, [](double) {});
-        for (const double scale : {1.0, 0.75, 0.5}) print(judge(frames, begin_, path, truth, scale));
+        for (const Warping& warping : kWarpings) print(judge(frames, begin_, path, truth, warping));
         std::printf("\n");
         std::fflush(stdout);
       }

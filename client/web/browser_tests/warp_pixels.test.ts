@@ -1,6 +1,7 @@
 import { afterAll, beforeAll, beforeEach, describe, expect, it } from 'vitest';
 import type { Projection } from '../src/camera/projection';
 import type { DepthPlane } from '../src/warp/depth_plane';
+import type * as WarpMeshModule from '../src/warp/warp_mesh';
 import type * as WarpPainterModule from '../src/warp/warp_painter';
 import { Session, use } from './support/session';
 import { Sources } from './support/sources';
@@ -38,8 +39,9 @@ function turned(radians: number): Projection {
 async function warped(below: Frame, above: Frame | undefined, target: Projection): Promise<number[]> {
   const passed = [below, above].map((frame) => frame && { ...frame, color: `${frame.color}`, depth: `${frame.depth}` });
   return session.page.evaluate(
-    async ({ passed, target, module }) => {
-      const { WarpPainter } = (await window.load(module)) as typeof WarpPainterModule;
+    async ({ passed, target, modules }) => {
+      const { WarpPainter } = (await window.load(modules.painter)) as typeof WarpPainterModule;
+      const { meshOf } = (await window.load(modules.mesh)) as typeof WarpMeshModule;
       const evaluated = <T>(text: string): T => (0, eval)(`(${text})`) as T;
       const sourceOf = async (frame: NonNullable<(typeof passed)[0]>): Promise<WarpPainterModule.WarpSource> => {
         const { width, height } = frame.projection;
@@ -61,7 +63,8 @@ async function warped(below: Frame, above: Frame | undefined, target: Projection
           ...{ first: 0.001, last: Math.max(...values), seenThrough: false },
         };
         const bitmap = await createImageBitmap(new ImageData(pixels, width, height), { premultiplyAlpha: 'none' });
-        return { bitmap, depth, projection: frame.projection, background: { red: 0, green: 0, blue: 0 } };
+        const background = { red: 0, green: 0, blue: 0 };
+        return { bitmap, depth, mesh: meshOf(depth), projection: frame.projection, background };
       };
       const canvas = document.createElement('canvas');
       const painter = WarpPainter.on(canvas, () => undefined)!;
@@ -77,7 +80,7 @@ async function warped(below: Frame, above: Frame | undefined, target: Projection
       }
       return result;
     },
-    { passed, target, module: '/src/warp/warp_painter.ts' },
+    { passed, target, modules: { painter: '/src/warp/warp_painter.ts', mesh: '/src/warp/warp_mesh.ts' } },
   );
 }
 

@@ -1,5 +1,6 @@
 import { FileFormat, type DrawPicture, type ViewFrame } from '../generated/surfcast_pb';
-import { decodePlane, type DepthPlane } from '../warp/depth_plane';
+import { DepthMesher } from '../warp/depth_mesher';
+import type { MeshedPlane } from '../warp/meshed_plane';
 import { PacketDecoder } from './packet_decoder';
 
 const types: Readonly<Record<FileFormat, string>> = {
@@ -29,7 +30,7 @@ export interface PaintedFrame extends ArrivedFrame {
 
 export interface DecodedFrame extends ArrivedFrame {
   readonly bitmap: ImageBitmap;
-  readonly depth: DepthPlane | undefined;
+  readonly depth: MeshedPlane | undefined;
   readonly decoded: number;
 }
 
@@ -53,6 +54,7 @@ export class Painter {
   private newestBytes = 0;
   private generation = 0;
   private readonly video = new PacketDecoder();
+  private readonly mesher = new DepthMesher();
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -79,12 +81,17 @@ export class Painter {
     const { frame } = arrived;
     try {
       const decoded = frame.video ? this.video.decode(frame) : bitmapOf(frame);
-      const [bitmap, depth] = await Promise.all([decoded, depthOf(frame)]);
+      const [bitmap, depth] = await Promise.all([decoded, this.depthOf(frame)]);
       if (generation === this.generation) this.queue({ ...arrived, bitmap, depth, decoded: performance.now() });
       else bitmap.close();
     } catch {
       if (generation === this.generation) this.events.broken(arrived);
     }
+  }
+
+  /** Without a depth, or with a damaged one, the frame is shown as it is. */
+  private async depthOf({ depth, picture }: ViewFrame): Promise<MeshedPlane | undefined> {
+    return depth && picture?.resolution ? this.mesher.mesh(depth, picture.resolution) : undefined;
   }
 
   private queue(decoded: DecodedFrame): void {
@@ -129,8 +136,3 @@ async function bitmapOf({ picture }: ViewFrame): Promise<ImageBitmap> {
   return createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
 }
 
-/** Without a depth, or with a damaged one, the frame is shown as it is. */
-async function depthOf({ depth, picture }: ViewFrame): Promise<DepthPlane | undefined> {
-  if (!depth || !picture?.resolution) return undefined;
-  return decodePlane(depth, picture.resolution).catch(() => undefined);
-}

@@ -1,11 +1,11 @@
 import type { Camera } from '../camera/pose';
-import { projectionOf } from '../camera/projection';
+import { projectionOf, type Projection } from '../camera/projection';
 import type { Vector } from '../camera/vector';
 import { cameraFrom, type Size } from '../protocol/pictures';
 import { sameView, shownAs, type LayerFrame } from '../warp/layers';
 import { WarpPainter, type WarpSource } from '../warp/warp_painter';
 import type { DecodedFrame } from './painter';
-import { WarpResolution } from './warp_resolution';
+import { WarpQualityControl } from './warp_quality';
 
 /** A painted frame, and what it is warped from, if it has a depth. */
 interface Shot extends LayerFrame {
@@ -31,7 +31,7 @@ export class Screen {
   private newest: Shot | undefined;
   private rest: Shot | undefined;
   private drawn: Drawn | undefined;
-  private readonly resolution = new WarpResolution();
+  private readonly control = new WarpQualityControl();
   private still = false; // what is drawn has been shown for a while
   private stillTimer: ReturnType<typeof setTimeout> | undefined;
 
@@ -61,6 +61,7 @@ export class Screen {
     this.newest = shot;
     if (!shot.moving && shot.source) this.rest = shot;
     for (const one of former) if (one !== this.newest && one !== this.rest) this.drop(one);
+    this.tryQuality(shot);
   }
 
   /** Forgets the frames of a model. What is on the screen stays as it is until the next frame. */
@@ -75,7 +76,10 @@ export class Screen {
   show(camera: Camera | undefined, sky: Vector): Camera | undefined {
     const shown = shownAs(this.newest, this.rest, camera, sky);
     if (shown.kind === 'kept') return undefined;
-    if (shown.kind === 'warped' && camera && this.draw(shown.below, shown.above, camera, sky)) return camera;
+    if (shown.kind === 'warped' && camera) {
+      const above = this.control.quality.layered ? shown.above : undefined;
+      if (this.draw(shown.below, above, camera, sky)) return camera;
+    }
     this.hide();
     return this.newest?.camera;
   }
@@ -86,18 +90,39 @@ export class Screen {
     this.canvas.hidden = false;
     const same = drawn?.below === below && drawn.above === above && sameView(drawn.camera, camera, sky);
     if (same && (drawn.scale === 1 || !this.still)) return true;
-    const scale = same ? 1 : this.resolution.scale;
+    const scale = same ? 1 : this.control.quality.scale;
     this.drawn = { below, above, camera, scale };
-    const width = Math.round(scale * below.view.width);
-    const height = Math.round(scale * below.view.height);
-    const begun = performance.now();
-    this.painter.draw(below.source, above?.source, projectionOf(camera, sky, width, height));
-    if (!same && this.resolution.measuresNext()) {
-      this.painter.finish();
-      this.resolution.record(performance.now() - begun);
-    }
+    const target = targetOf(below, camera, sky, scale);
+    if (same || !this.control.measuresNext()) this.painter.draw(below.source, above?.source, target);
+    else this.drawMeasured(this.painter, below.source, above?.source, target);
     this.awaitStill();
     return true;
+  }
+
+  private drawMeasured(
+    painter: WarpPainter,
+    below: WarpSource,
+    above: WarpSource | undefined,
+    target: Projection,
+  ): void {
+    const begun = performance.now();
+    painter.draw(below, above, target);
+    painter.finish();
+    this.control.record(performance.now() - begun, above !== undefined);
+  }
+
+  /** Before the first movement, the quality that it will have is found out with warps that are not shown. */
+  private tryQuality(shot: Shot): void {
+    setTimeout(() => {
+      const { source, camera } = shot;
+      const { painter, control } = this;
+      if (!painter || painter.lost || !source || this.rest !== shot || !this.canvas.hidden) return;
+      if (!control.isUncertain) return;
+      const { scale, layered } = control.quality;
+      const target = targetOf(shot, camera, source.projection.axes.up, scale);
+      this.drawMeasured(painter, source, layered ? source : undefined, target);
+      this.tryQuality(shot);
+    });
   }
 
   /** Where nothing moves any more, what was drawn with fewer pixels is drawn with all. */
@@ -123,11 +148,17 @@ export class Screen {
   }
 }
 
+/** The view of a camera with a part of the pixels. */
+function targetOf({ view }: Shot, camera: Camera, sky: Vector, scale: number): Projection {
+  return projectionOf(camera, sky, Math.round(scale * view.width), Math.round(scale * view.height));
+}
+
 function shotOf({ frame, asked, bitmap, depth }: DecodedFrame, sky: Vector): Shot | undefined {
   const camera = cameraFrom(frame.picture?.camera);
   if (!camera) return undefined;
   const view: Size = frame.resolution ?? bitmap;
-  const fits = depth?.picture.width === bitmap.width && depth.picture.height === bitmap.height;
+  const plane = depth?.plane;
+  const fits = plane?.picture.width === bitmap.width && plane.picture.height === bitmap.height;
   const projection = projectionOf(camera, sky, bitmap.width, bitmap.height);
   const background = asked?.background ?? { red: 0, green: 0, blue: 0 };
   return {
@@ -136,7 +167,7 @@ function shotOf({ frame, asked, bitmap, depth }: DecodedFrame, sky: Vector): Sho
     moving: frame.moving,
     preview: frame.picture?.preview ?? false,
     asked,
-    depth: fits ? depth : undefined,
-    source: fits && depth ? { bitmap, depth, projection, background } : undefined,
+    depth: fits ? plane : undefined,
+    source: fits && depth ? { bitmap, depth: plane, mesh: depth.mesh, projection, background } : undefined,
   };
 }

@@ -13,11 +13,14 @@ export interface DepthPlane {
   readonly seenThrough: boolean; // pixels may show things at several depths
 }
 
+/** A plane as it is received. */
+export type EncodedPlane = Pick<WirePlane, 'width' | 'height' | 'cell' | 'first' | 'last' | 'seenThrough' | 'codes'>;
+
 const maxTexels = 2 ** 20;
 const steps = 254; // between the codes 1 and 255, even ones of the logarithm
 
 /** Decodes the depth of a picture of the given size. Rejects planes that are damaged or do not fit the picture. */
-export async function decodePlane(plane: WirePlane, picture: Size): Promise<DepthPlane> {
+export async function decodePlane(plane: EncodedPlane, picture: Size): Promise<DepthPlane> {
   const { width, height, cell, first, last, seenThrough } = plane;
   check(cell >= 1 && picture.width >= 1 && picture.height >= 1, 'no size');
   check(width === Math.ceil(picture.width / cell) && height === Math.ceil(picture.height / cell), 'another size');

@@ -3,12 +3,13 @@ import type { Rgb } from '../state/rgb';
 import type { DepthPlane } from './depth_plane';
 import * as shaders from './shaders';
 import { clipMatrix, rowMatrix, warpBetween } from './warp_camera';
-import { fillFloats, marginOf, meshOf, sheetFloats, tolerance, type WarpMesh } from './warp_mesh';
+import { fillFloats, marginOf, sheetFloats, tolerance, type WarpMesh } from './warp_mesh';
 
 /** A frame that can be warped. */
 export interface WarpSource {
   readonly bitmap: ImageBitmap;
   readonly depth: DepthPlane;
+  readonly mesh: WarpMesh; // of `depth`
   readonly projection: Projection; // of the pixels of `bitmap`
   readonly background: Rgb;
 }
@@ -289,7 +290,7 @@ export class WarpPainter {
     if (known) return known;
     const texture = pictureTexture(this.gl, source.bitmap);
     const fillColors = this.fillColors(source.depth, texture);
-    const upload = { texture, fillColors, ...buffersOf(this.gl, meshOf(source.depth)) };
+    const upload = { texture, fillColors, ...buffersOf(this.gl, source.mesh) };
     this.uploads.set(source, upload);
     return upload;
   }
