@@ -104,7 +104,7 @@ void see_large(LargeSplat s, Rays rays, Rows limit, inout Rows surface) {
 // Entries from `start` on, with a distance of `stride`.
 void find_surface_large(uint first, uint count, uint start, uint stride, vec2 pixel, Columns limit,
                         inout Columns surface, inout float peak) {
-  vec2 rays[SURFCAST_ROWS];
+  Rays rays;
   rays_of_rows(pixel, rays);
   float ray_length = longest_of(rays);
   for (uint k = start; k < count; k += stride) {
@@ -135,7 +135,7 @@ Rows weights_of_large(LargeSplat s, Rays rays, Rows limit, Rows surface, out Row
 
 void accumulate_large(uint first, uint count, uint start, uint stride, vec2 pixel, Columns limit, Columns surface,
                       float unit, inout ColumnSums sums) {
-  vec2 rays[SURFCAST_ROWS];
+  Rays rays;
   rays_of_rows(pixel, rays);
   for (uint begin = start; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL) * stride) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL) * stride, count);

@@ -56,7 +56,7 @@ describe('a drag', () => {
     const still = await overlay();
     wire.holdFrames();
     await look.drag(yard.page, 40, -12);
-    expect(await warping.isWarped(yard.page)).toBe(true);
+    await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
     const [moved, warped] = [await overlay(), await warping.screen(yard.page)];
     expect(moved).not.toBe(still);
     wire.releaseFrames();
@@ -138,7 +138,7 @@ describe('a warped picture', () => {
     const wire = await openYard();
     wire.holdFrames();
     await look.drag(yard.page, 40, 0);
-    expect(await warping.isWarped(yard.page)).toBe(true);
+    await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
     await yard.page.evaluate(() => {
       const gl = document.querySelector<HTMLCanvasElement>('canvas.warped')!.getContext('webgl2')!;
       const extension = gl.getExtension('WEBGL_lose_context')!;
@@ -171,7 +171,7 @@ describe('a warped picture', () => {
       await expect.poll(() => wire.asked.filter((kind) => kind === 'openView').length).toBe(2);
       await yard.page.mouse.wheel(0, 300);
       await yard.page.waitForTimeout(300);
-      expect(await warping.isWarped(yard.page)).toBe(true);
+      await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
       // What is left of the former one has not moved.
       expect(await warping.distance(yard.page, await warping.screen(yard.page), warped)).toBeLessThan(0.1);
       wire.releaseFrames();
@@ -189,7 +189,7 @@ describe('a warped picture', () => {
     await yard.page.locator('.banner').waitFor();
     const before = await warping.screen(yard.page);
     await look.drag(yard.page, 40, 0);
-    expect(await warping.isWarped(yard.page)).toBe(true);
+    await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
     expect(await warping.distance(yard.page, before, await warping.screen(yard.page))).toBeGreaterThan(1);
     yard.server = await Server.start(yard.model, port);
     await look.sharp(yard.page);

@@ -384,20 +384,19 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   const std::string at_once = splat + define("SURFCAST_TILES_AT_ONCE", shape_.tiles_at_once);
   const std::string small = at_once + lane_defines(shape_.whole_tiles);
   const int large_rows = rows_of_large(shape_, variant, fragments);
-  const std::string large = "#define SURFCAST_LARGE\n" + define("SURFCAST_COLUMNS", 1);
+  const std::string large =
+      at_once + define("SURFCAST_COLUMNS", 1) + define("SURFCAST_ROWS", large_rows) + "#define SURFCAST_LARGE\n";
   const std::string kept = kept_defines(variant);
   const std::string selecting = selects(variant) ? "#define SURFCAST_SELECTS\n" : "";
   const char* kernel = tile_kernel(variant);
   Status status = compile(programs.splat, plain(kernel), small + kept + selecting);
-  if (status)
-    status =
-        compile(programs.splat_large, with_kinds(kernel), at_once + large + define("SURFCAST_ROWS", large_rows) + kept);
+  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + kept);
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);
     if (status) status = compile(programs.silhouettes, plain("silhouettes.comp"), columns + samples_define(variant));
     if (status) status = compile(programs.supersample, plain("supersample.comp"), splat + columns + rows + selecting);
-    const std::string large_samples = at_once + large + define("SURFCAST_ROWS", large_rows) + samples_define(variant);
+    const std::string large_samples = large + samples_define(variant);
     if (status) status = compile(programs.supersample_large, with_kinds("supersample.comp"), large_samples);
     programs.lanes_of_large_pixel = samples_of_large(variant) / large_rows;
   }

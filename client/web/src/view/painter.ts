@@ -135,4 +135,3 @@ async function bitmapOf({ picture }: ViewFrame): Promise<ImageBitmap> {
   const file = new Blob([picture.data as Uint8Array<ArrayBuffer>], { type: mediaType(picture.format) });
   return createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
 }
-

@@ -5,7 +5,7 @@ import { cameraFrom, type Size } from '../protocol/pictures';
 import { sameView, shownAs, type LayerFrame } from '../warp/layers';
 import { WarpPainter, type WarpSource } from '../warp/warp_painter';
 import type { DecodedFrame } from './painter';
-import { WarpQualityControl } from './warp_quality';
+import { bestQuality, WarpQualityControl } from './warp_quality';
 
 /** A painted frame, and what it is warped from, if it has a depth. */
 interface Shot extends LayerFrame {
@@ -15,9 +15,9 @@ interface Shot extends LayerFrame {
 /** What was drawn last. */
 interface Drawn {
   readonly below: Shot;
-  readonly above: Shot | undefined;
+  readonly above: Shot | undefined; // may be left out
   readonly camera: Camera;
-  readonly scale: number; // of its width and height, of those of the view
+  readonly best: boolean; // of all qualities
 }
 
 const stillAfter = 100; // ms without another picture
@@ -76,10 +76,7 @@ export class Screen {
   show(camera: Camera | undefined, sky: Vector): Camera | undefined {
     const shown = shownAs(this.newest, this.rest, camera, sky);
     if (shown.kind === 'kept') return undefined;
-    if (shown.kind === 'warped' && camera) {
-      const above = this.control.quality.layered ? shown.above : undefined;
-      if (this.draw(shown.below, above, camera, sky)) return camera;
-    }
+    if (shown.kind === 'warped' && camera && this.draw(shown.below, shown.above, camera, sky)) return camera;
     this.hide();
     return this.newest?.camera;
   }
@@ -89,12 +86,13 @@ export class Screen {
     const { drawn } = this;
     this.canvas.hidden = false;
     const same = drawn?.below === below && drawn.above === above && sameView(drawn.camera, camera, sky);
-    if (same && (drawn.scale === 1 || !this.still)) return true;
-    const scale = same ? 1 : this.control.quality.scale;
-    this.drawn = { below, above, camera, scale };
-    const target = targetOf(below, camera, sky, scale);
-    if (same || !this.control.measuresNext()) this.painter.draw(below.source, above?.source, target);
-    else this.drawMeasured(this.painter, below.source, above?.source, target);
+    if (same && (drawn.best || !this.still)) return true;
+    const quality = same ? bestQuality : this.control.quality;
+    this.drawn = { below, above, camera, best: quality === bestQuality };
+    const target = targetOf(below, camera, sky, quality.scale);
+    const upper = quality.layered ? above?.source : undefined;
+    if (same || !this.control.measuresNext()) this.painter.draw(below.source, upper, target);
+    else this.drawMeasured(this.painter, below.source, upper, target);
     this.awaitStill();
     return true;
   }
@@ -125,11 +123,11 @@ export class Screen {
     });
   }
 
-  /** Where nothing moves any more, what was drawn with fewer pixels is drawn with all. */
+  /** Where nothing moves any more, what was drawn with less is drawn in the best quality. */
   private awaitStill(): void {
     clearTimeout(this.stillTimer);
     this.still = false;
-    if (this.drawn?.scale === 1) return;
+    if (this.drawn?.best === true) return;
     this.stillTimer = setTimeout(() => {
       this.still = true;
       this.changed();

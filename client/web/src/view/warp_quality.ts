@@ -6,9 +6,11 @@ export interface WarpQuality {
   readonly layered: boolean; // the last frame at rest is drawn over the newest one
 }
 
+export const bestQuality: WarpQuality = { scale: 1, layered: true };
+
 /** Best first. docs/motion.md has their errors. */
 const qualities: readonly WarpQuality[] = [
-  { scale: 1, layered: true },
+  bestQuality,
   { scale: 0.75, layered: true },
   { scale: 0.5, layered: true },
   { scale: 0.375, layered: true },

@@ -17,9 +17,9 @@ export interface MeshReply {
 
 async function answer({ id, plane, picture }: MeshRequest): Promise<void> {
   const meshed = await meshedPlane(plane, picture);
-  const arrays = meshed ? [meshed.plane.values, ...Object.values(meshed.mesh as object)] : [];
-  const transfer = (arrays as (Float32Array<ArrayBuffer> | Uint32Array<ArrayBuffer>)[]).map(({ buffer }) => buffer);
-  self.postMessage({ id, meshed } satisfies MeshReply, { transfer });
+  const arrays: ArrayBufferView[] = meshed ? [meshed.plane.values, ...Object.values({ ...meshed.mesh })] : [];
+  const reply: MeshReply = { id, meshed };
+  self.postMessage(reply, { transfer: arrays.map(({ buffer }) => buffer as ArrayBuffer) });
 }
 
 self.addEventListener('message', ({ data }: MessageEvent<MeshRequest>) => void answer(data));
