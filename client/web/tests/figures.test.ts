@@ -2,7 +2,7 @@ import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { ViewFrameSchema } from '../src/generated/surfcast_pb';
 import { FigureCollector, median, stageNames, stagesOf } from '../src/view/figures';
-import type { PaintedFrame } from '../src/view/painter';
+import type { PaintedFrame } from '../src/view/frame_decoder';
 import { pixelsOf } from '../src/view/stage_size';
 
 const stages = [

@@ -7,7 +7,7 @@ import { Connection } from '../src/protocol/connection';
 import { decodeHello, encodeHello, refusalIn, type Refusal } from '../src/protocol/hello';
 import { Link, type LinkState } from '../src/protocol/link';
 import { ViewSession } from '../src/view/view_session';
-import type { ArrivedFrame } from '../src/view/painter';
+import type { ArrivedFrame } from '../src/view/frame_decoder';
 import { FakeServer, serverHello } from './support/fake_server';
 
 Object.assign(globalThis, { WebSocket });

@@ -1,12 +1,16 @@
 import type { Page } from 'playwright-core';
 
 /**
- * Lets a test decide in which order the page's pictures are decoded, and tells which of them were painted. Pictures are
+ * Lets a test decide in which order the page's pictures are decoded, and tells which of them were shown. Pictures are
  * numbered from 0 as they arrive, with those of frames that are not whole.
  */
 interface Decoding {
   /** Every second picture is decoded only after a later one was painted. */
   unordered: boolean;
+  arrived: number;
+  /** Older pictures do not count. */
+  first: number;
+  /** Pictures, in the order in which they were first shown, as they are or warped. */
   readonly painted: number[];
   /** Of each picture: whether it is a progressive JPEG file that lacks scans. */
   readonly early: boolean[];
@@ -23,10 +27,9 @@ declare global {
 /** Before the page is opened. */
 export const watch = (page: Page): Promise<void> =>
   page.addInitScript(() => {
-    const decoding: Decoding = { unordered: false, painted: [], early: [], waiting: new Map() };
+    const decoding: Decoding = { unordered: false, arrived: 0, first: 0, painted: [], early: [], waiting: new Map() };
     window.decoding = decoding;
     const numbers = new WeakMap<object, number>();
-    let arrived = 0;
     const decode = window.createImageBitmap.bind(window);
     const lacksScans = async (file: unknown): Promise<boolean> => {
       if (!(file instanceof Blob) || file.type !== 'image/jpeg') return false;
@@ -36,7 +39,7 @@ export const watch = (page: Page): Promise<void> =>
       return count(0xc2) === 1 && count(0xda) < 10; // libjpeg-turbo writes ten
     };
     window.createImageBitmap = async (...args: unknown[]): Promise<ImageBitmap> => {
-      const number = arrived++;
+      const number = decoding.arrived++;
       decoding.early[number] = false;
       decoding.early[number] = await lacksScans(args[0]);
       const bitmap = await (decode as (...rest: unknown[]) => Promise<ImageBitmap>)(...args);
@@ -46,22 +49,32 @@ export const watch = (page: Page): Promise<void> =>
       }
       return bitmap;
     };
-    const draw = CanvasRenderingContext2D.prototype.drawImage;
-    CanvasRenderingContext2D.prototype.drawImage = function (this: CanvasRenderingContext2D, ...args: unknown[]) {
-      (draw as (...rest: unknown[]) => void).apply(this, args);
-      const number = numbers.get(args[0] as object);
-      if (number === undefined) return;
+    const shown = (bitmap: unknown): void => {
+      const number = numbers.get(bitmap as object);
+      if (number === undefined || number < decoding.first || decoding.painted.includes(number)) return;
       decoding.painted.push(number);
       for (const [waiting, release] of decoding.waiting) {
         if (waiting > number) continue;
         decoding.waiting.delete(waiting);
         release();
       }
-    } as typeof draw;
+    };
+    type Method = (...args: unknown[]) => void;
+    const watchCalls = (prototype: object, name: string): void => {
+      const methods = prototype as Record<string, Method>;
+      const method = methods[name]!;
+      methods[name] = function (this: unknown, ...args: unknown[]) {
+        method.apply(this, args);
+        args.filter((arg) => arg instanceof ImageBitmap).forEach(shown);
+      };
+    };
+    watchCalls(CanvasRenderingContext2D.prototype, 'drawImage');
+    watchCalls(WebGL2RenderingContext.prototype, 'texImage2D'); // of a frame that is warped
   });
 
 export const startUnordered = (page: Page): Promise<void> =>
   page.evaluate(() => {
+    window.decoding.first = window.decoding.arrived;
     window.decoding.painted.length = 0;
     window.decoding.unordered = true;
   });

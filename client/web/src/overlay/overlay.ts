@@ -61,10 +61,11 @@ function measurement(pen: Pen, m: Measurement, up: UpAxis, decimals: number, gro
   if (main && isWhole(m)) pen.label(labelPoint(m, up), main.value, colors.measure);
 }
 
+const showsClips = (): boolean => store.panel.value === 'clip' || store.tool.value === 'clip';
+
 function clips(pen: Pen): void {
+  if (!showsClips()) return;
   const edited = store.editedClip.value;
-  const showAll = store.panel.value === 'clip' || store.tool.value === 'clip';
-  if (!showAll) return;
   store.display.value.clips.forEach(({ box, inverted }, i) => {
     const here = i === edited;
     const color = inverted ? (here ? colors.hide : colors.hideFaint) : here ? colors.clip : colors.clipFaint;
@@ -88,6 +89,12 @@ function inspected(pen: Pen): void {
   pen.dot(inspection.at, colors.inspect, 2.5);
 }
 
+function isEmpty(): boolean {
+  const clipped = showsClips() && store.display.value.clips.length > 0;
+  const annotated = (kept.value?.annotations ?? []).length > 0;
+  return !clipped && !annotated && store.measurements.value.length === 0 && !store.inspection.value;
+}
+
 function draw(context: CanvasRenderingContext2D, view: Projection, ratio: number): void {
   const pen = new Pen(context, view, ratio);
   const decimals = store.lengthDecimals.value;
@@ -99,11 +106,16 @@ function draw(context: CanvasRenderingContext2D, view: Projection, ratio: number
   inspected(pen);
 }
 
-/** Redraws the overlay whenever the picture, a measurement or a clip box changes. */
+/**
+ * Redraws the overlay whenever the picture, a measurement or a clip box changes. An empty one is hidden: to lay it over
+ * the picture would take time of each frame.
+ */
 export function startOverlay(canvas: HTMLCanvasElement): () => void {
   const context = canvas.getContext('2d');
   if (!context) throw new Error('This browser does not support 2D canvases.');
   return effect(() => {
+    canvas.hidden = isEmpty();
+    if (canvas.hidden) return;
     const view = store.shownProjection.value;
     const width = view?.width ?? 1;
     const height = view?.height ?? 1;

@@ -4,7 +4,7 @@ import { cameraOf } from '../camera/pose';
 import { FileFormat } from '../generated/surfcast_pb';
 import { pictureOf, type Size } from '../protocol/pictures';
 import { dialog, display, model, pose, showNotice, stageSize, upAxis } from '../state/store';
-import { mediaType } from '../view/painter';
+import { mediaType } from '../view/frame_decoder';
 import { useActions, type Actions } from './actions';
 import { Choices, Dialog, NumberField, Switch } from './controls';
 import { saveFile } from './save_file';

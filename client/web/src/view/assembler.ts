@@ -1,7 +1,7 @@
 import { create } from '@bufbuild/protobuf';
 import { FileFormat, ViewFrameSchema, type ViewFrame } from '../generated/surfcast_pb';
 import { endedAt, showableBytes } from './jpeg_scans';
-import type { ArrivedFrame } from './painter';
+import type { ArrivedFrame } from './frame_decoder';
 
 /**
  * Assembles frames from their pieces. Each piece states whether more pieces follow. A piece of another frame means that

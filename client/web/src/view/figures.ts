@@ -1,4 +1,4 @@
-import type { PaintedFrame } from './painter';
+import type { PaintedFrame } from './frame_decoder';
 
 /** Duration of the stages of one frame, ms. */
 export interface StageTimes {

@@ -1,14 +1,16 @@
 import type { Camera } from '../camera/pose';
 import { projectionOf, type Projection } from '../camera/projection';
 import type { Vector } from '../camera/vector';
-import { cameraFrom, type Size } from '../protocol/pictures';
+import type { Size } from '../protocol/pictures';
 import { sameView, shownAs, type LayerFrame } from '../warp/layers';
 import { WarpPainter, type WarpSource } from '../warp/warp_painter';
-import type { DecodedFrame } from './painter';
+import type { DecodedFrame } from './frame_decoder';
+import { PictureCanvas } from './picture_canvas';
 import { bestQuality, WarpQualityControl } from './warp_quality';
 
-/** A painted frame, and what it is warped from, if it has a depth. */
+/** A frame, and what it is warped from, if it has a depth. */
 interface Shot extends LayerFrame {
+  readonly bitmap: ImageBitmap;
   readonly source: WarpSource | undefined;
 }
 
@@ -22,12 +24,21 @@ interface Drawn {
 
 const stillAfter = 100; // ms without another picture
 
+/** The canvas of frames as they are, and above it that of warped ones. */
+export interface Canvases {
+  readonly picture: HTMLCanvasElement;
+  readonly warped: HTMLCanvasElement;
+}
+
 /**
- * The canvas over the painted frame. It shows the frame, and under it the last one at rest, as the present camera sees
- * them, while a newer frame is on its way. Where the frame is of the present camera, or has no depth, it is hidden.
+ * Shows the newest frame, and under it the last one at rest, as the present camera sees them, while a newer frame is on
+ * its way. A frame of the present camera, or without a depth, is shown as it is.
  */
 export class Screen {
+  private readonly picture: PictureCanvas;
+  private readonly canvas: HTMLCanvasElement; // of warped frames
   private readonly painter: WarpPainter | undefined;
+  private painted: Shot | undefined; // on the canvas of pictures
   private newest: Shot | undefined;
   private rest: Shot | undefined;
   private drawn: Drawn | undefined;
@@ -37,11 +48,13 @@ export class Screen {
 
   /** `changed`: `show` is to be called again. */
   constructor(
-    private readonly canvas: HTMLCanvasElement,
+    { picture, warped }: Canvases,
     private readonly changed: () => void,
   ) {
-    canvas.hidden = true;
-    this.painter = WarpPainter.on(canvas, () => {
+    this.picture = new PictureCanvas(picture);
+    this.canvas = warped;
+    warped.hidden = true;
+    this.painter = WarpPainter.on(warped, () => {
       this.hide();
       changed();
     });
@@ -52,11 +65,9 @@ export class Screen {
     return this.painter !== undefined;
   }
 
-  /** Takes the frame that was painted last, and its bitmap. `sky` is the view up of a camera that states none. */
+  /** Takes the newest frame, and its bitmap. `sky` is the view up of a camera that states none. */
   take(frame: DecodedFrame, sky: Vector): void {
     const shot = shotOf(frame, sky);
-    if (!shot?.source) frame.bitmap.close();
-    if (!shot) return;
     const former = [this.newest, this.rest];
     this.newest = shot;
     if (!shot.moving && shot.source) this.rest = shot;
@@ -66,6 +77,7 @@ export class Screen {
 
   /** Forgets the frames of a model. What is on the screen stays as it is until the next frame. */
   freeze(): void {
+    this.paint();
     this.drop(this.newest);
     if (this.rest !== this.newest) this.drop(this.rest);
     this.newest = undefined;
@@ -135,14 +147,21 @@ export class Screen {
   }
 
   private hide(): void {
+    this.paint();
     this.canvas.hidden = true;
     this.drawn = undefined;
   }
 
+  /** A frame that is covered by a warped one is not painted: that would take time from the warp. */
+  private paint(): void {
+    if (!this.newest || this.painted === this.newest) return;
+    this.picture.paint(this.newest.bitmap, this.newest.view);
+    this.painted = this.newest;
+  }
+
   private drop(shot: Shot | undefined): void {
-    if (!shot?.source) return;
-    this.painter?.forget(shot.source);
-    shot.source.bitmap.close();
+    if (shot?.source) this.painter?.forget(shot.source);
+    shot?.bitmap.close();
   }
 }
 
@@ -151,9 +170,7 @@ function targetOf({ view }: Shot, camera: Camera, sky: Vector, scale: number): P
   return projectionOf(camera, sky, Math.round(scale * view.width), Math.round(scale * view.height));
 }
 
-function shotOf({ frame, asked, bitmap, depth }: DecodedFrame, sky: Vector): Shot | undefined {
-  const camera = cameraFrom(frame.picture?.camera);
-  if (!camera) return undefined;
+function shotOf({ frame, asked, camera, bitmap, depth }: DecodedFrame, sky: Vector): Shot {
   const view: Size = frame.resolution ?? bitmap;
   const plane = depth?.plane;
   const fits = plane?.picture.width === bitmap.width && plane.picture.height === bitmap.height;
@@ -161,6 +178,7 @@ function shotOf({ frame, asked, bitmap, depth }: DecodedFrame, sky: Vector): Sho
   const background = asked?.background ?? { red: 0, green: 0, blue: 0 };
   return {
     camera,
+    bitmap,
     view: { width: view.width, height: view.height },
     moving: frame.moving,
     preview: frame.picture?.preview ?? false,

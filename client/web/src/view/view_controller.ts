@@ -14,14 +14,14 @@ import {
 import { backoff } from '../protocol/backoff';
 import { RequestError, type Connection } from '../protocol/connection';
 import { Link } from '../protocol/link';
-import { cameraFrom, pictureOf } from '../protocol/pictures';
+import { pictureOf } from '../protocol/pictures';
 import { hiddenAt } from '../state/joined';
 import { awaited, failed, renewed } from '../state/scans';
 import * as store from '../state/store';
 import { FigureCollector } from './figures';
+import { FrameDecoder, type ArrivedFrame, type DecodedFrame } from './frame_decoder';
 import { decodesVideo } from './packet_decoder';
-import { Painter, type ArrivedFrame, type DecodedFrame, type PaintedFrame } from './painter';
-import { Screen } from './screen';
+import { Screen, type Canvases } from './screen';
 import { ViewSession, type ViewEvents } from './view_session';
 
 /** A requested picture, and whether more requests will follow soon. */
@@ -44,12 +44,12 @@ interface LostView {
 
 /**
  * Synchronizes the page and the server. Sends changes of the store's model, pose and display options, at most one
- * update per animation frame, and paints the frames received, warped to the present camera. Reopens the view when the
+ * update per animation frame, and shows the frames received, warped to the present camera. Reopens the view when the
  * connection is lost.
  */
 export class ViewController {
   private readonly link: Link;
-  private readonly painter: Painter;
+  private readonly decoder: FrameDecoder;
   private readonly screen: Screen;
   private readonly collector = new FigureCollector();
   private connection: Connection | undefined;
@@ -60,7 +60,7 @@ export class ViewController {
   private scheduled = false;
   private video = false; // the browser decodes videos
   private ticking = false; // an animation frame is requested
-  private unacknowledged: ArrivedFrame | undefined; // painted in this animation frame
+  private taken: DecodedFrame | undefined; // in this animation frame
   private failures = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private listTimer: ReturnType<typeof setTimeout> | undefined;
@@ -68,13 +68,12 @@ export class ViewController {
   /** `step` advances animations of the eye to the given time. */
   constructor(
     url: () => string,
-    canvases: { readonly picture: HTMLCanvasElement; readonly warped: HTMLCanvasElement },
+    canvases: Canvases,
     private readonly step: (now: number) => boolean,
   ) {
-    this.screen = new Screen(canvases.warped, () => this.tick());
-    this.painter = new Painter(canvases.picture, {
+    this.screen = new Screen(canvases, () => this.tick());
+    this.decoder = new FrameDecoder({
       ready: () => this.tick(),
-      painted: (frame) => this.painted(frame),
       skipped: (frame) => this.skipped(frame),
       broken: (frame) => this.broken(frame),
     });
@@ -124,21 +123,30 @@ export class ViewController {
     const due = this.scheduled;
     this.scheduled = false;
     if (due && this.step(now)) this.schedule();
-    this.painter.paint();
+    const newest = this.decoder.newestFrame();
+    if (newest) this.take(newest);
     if (due) {
       this.send();
       store.updatePending.value = this.scheduled;
     }
     const shown = this.screen.show(this.presentCamera(), skyOf(store.upAxis.peek()));
     if (shown) store.shownCamera.value = shown;
-    this.acknowledge();
+    this.report();
   }
 
   /** Once for each frame, when it is on the GPU: the time steers the server. Later warps of it do not count. */
-  private acknowledge(): void {
-    const frame = this.unacknowledged;
-    this.unacknowledged = undefined;
-    if (frame) this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived);
+  private report(): void {
+    const { taken } = this;
+    this.taken = undefined;
+    if (!taken) return;
+    const { frame, arrived, whole } = taken;
+    const painted = performance.now();
+    if (whole) {
+      this.collector.painted({ ...taken, painted }, this.sentAt.get(frame.update));
+      this.session?.acknowledge(frame.frame, painted - arrived);
+    }
+    // Later frames of the same update are refinements, whose delay is not a latency.
+    for (const update of this.sentAt.keys()) if (update <= frame.update) this.sentAt.delete(update);
   }
 
   async pick(picture: DrawPicture, x: number, y: number): Promise<PickResult> {
@@ -182,7 +190,7 @@ export class ViewController {
   private goOn(connection: Connection, { session, sent }: LostView): void {
     clearTimeout(this.retryTimer);
     store.viewProblem.value = undefined;
-    this.painter.reset();
+    this.decoder.reset();
     this.session = session;
     this.sent = sent;
     session.goOn(connection);
@@ -241,7 +249,7 @@ export class ViewController {
     store.viewProblem.value = undefined;
     store.shownFrame.value = undefined;
     store.shownCamera.value = undefined;
-    this.painter.reset(); // a frame of the former model that is still being decoded must not be shown
+    this.decoder.reset(); // a frame of the former model that is still being decoded must not be shown
     this.screen.freeze();
     if (model === undefined) return;
     if ((store.models.peek()?.length ?? 0) > 1) this.link.renew();
@@ -273,13 +281,13 @@ export class ViewController {
     const request = this.currentRequest();
     if (!request || this.session) return;
     store.viewProblem.value = undefined;
-    this.painter.reset();
+    this.decoder.reset();
     this.sentAt.clear();
     store.wantedUpdate.value = 0n;
     this.sent = { ...request, moving: false };
     const events: ViewEvents = {
       frame: (frame) => {
-        if (this.sharpens(frame)) void this.painter.take(frame);
+        if (this.sharpens(frame)) void this.decoder.take(frame);
       },
       failed: (error) => {
         this.lost = { session, sent: this.sent };
@@ -363,31 +371,24 @@ export class ViewController {
     if (!same) store.wantedUpdate.value = update;
   }
 
-  private painted(painted: PaintedFrame & DecodedFrame): void {
-    const { frame } = painted;
+  private take(decoded: DecodedFrame): void {
+    const { frame } = decoded;
     this.failures = 0;
-    if (painted.whole) {
-      this.unacknowledged = painted;
-      this.collector.painted(painted, this.sentAt.get(frame.update));
-    }
-    // Later frames of the same update are refinements, whose delay is not a latency.
-    for (const update of this.sentAt.keys()) if (update <= frame.update) this.sentAt.delete(update);
-    store.shownFrame.value = withoutData(painted);
+    this.taken = decoded;
+    store.shownFrame.value = withoutData(decoded);
     store.frameIsCurrent.value = this.session !== undefined;
-    this.screen.take(painted, skyOf(store.upAxis.peek()));
-    if (!store.pose.peek() && frame.update >= store.wantedUpdate.peek()) this.adopt(painted);
+    this.screen.take(decoded, skyOf(store.upAxis.peek()));
+    if (!store.pose.peek() && frame.update >= store.wantedUpdate.peek()) this.adopt(decoded);
   }
 
   /** Adopts the view that the server chose, without requesting it again. */
-  private adopt({ frame }: ArrivedFrame): void {
-    const camera = cameraFrom(frame.picture?.camera);
-    if (!camera) return;
+  private adopt({ camera }: DecodedFrame): void {
     const untouched = this.sent && sameRequest(this.sent, this.currentRequest() ?? this.sent);
     store.pose.value = poseOf(camera, store.upAxis.peek());
     if (untouched) this.sent = this.currentRequest();
   }
 }
 
-function withoutData({ frame }: PaintedFrame): PaintedFrame['frame'] {
+function withoutData({ frame }: ArrivedFrame): ArrivedFrame['frame'] {
   return frame.picture ? { ...frame, picture: { ...frame.picture, data: new Uint8Array() } } : frame;
 }

@@ -1,7 +1,7 @@
 import { VideoCodec, type DrawPicture } from '../generated/surfcast_pb';
 import { errorOf, type AnswerKind, type Connection, type RequestError } from '../protocol/connection';
 import { FrameAssembler } from './assembler';
-import type { ArrivedFrame } from './painter';
+import type { ArrivedFrame } from './frame_decoder';
 
 export interface ViewEvents {
   frame(frame: ArrivedFrame): void;

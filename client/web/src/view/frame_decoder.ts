@@ -1,4 +1,6 @@
+import type { Camera } from '../camera/pose';
 import { FileFormat, type DrawPicture, type ViewFrame } from '../generated/surfcast_pb';
+import { cameraFrom } from '../protocol/pictures';
 import { DepthMesher } from '../warp/depth_mesher';
 import type { MeshedPlane } from '../warp/meshed_plane';
 import { PacketDecoder } from './packet_decoder';
@@ -23,32 +25,29 @@ export interface ArrivedFrame {
   readonly asked?: DrawPicture | undefined;
 }
 
-export interface PaintedFrame extends ArrivedFrame {
-  readonly decoded: number;
-  readonly painted: number;
-}
-
 export interface DecodedFrame extends ArrivedFrame {
+  readonly camera: Camera;
   readonly bitmap: ImageBitmap;
   readonly depth: MeshedPlane | undefined;
-  readonly decoded: number;
+  readonly decoded: number; // performance.now()
 }
 
-export interface PainterEvents {
-  /** A frame is decoded: `paint` should be called in the next animation frame. */
+/** A frame that has been shown. */
+export interface PaintedFrame extends ArrivedFrame {
+  readonly decoded: number;
+  readonly painted: number; // performance.now()
+}
+
+export interface DecoderEvents {
+  /** A frame is decoded: `newestFrame` should be called in the next animation frame. */
   ready(): void;
-  /** Whoever takes this closes the bitmap. */
-  painted(frame: PaintedFrame & DecodedFrame): void;
-  /** A newer frame was ready before this one could be painted. The frame must be acknowledged all the same. */
+  /** A newer frame was ready before this one was taken. The frame must be acknowledged all the same. */
   skipped(frame: ArrivedFrame): void;
   broken(frame: ArrivedFrame): void;
 }
 
-/**
- * Paints frames on a canvas. Pictures are decoded off the main thread. Only the newest decoded picture is painted.
- */
-export class Painter {
-  private readonly context: CanvasRenderingContext2D;
+/** Decodes pictures and depths off the main thread. Only the newest decoded frame is kept. */
+export class FrameDecoder {
   private ready: DecodedFrame | undefined;
   private newest = 0n;
   private newestBytes = 0;
@@ -56,17 +55,9 @@ export class Painter {
   private readonly video = new PacketDecoder();
   private readonly mesher = new DepthMesher();
 
-  constructor(
-    private readonly canvas: HTMLCanvasElement,
-    private readonly events: PainterEvents,
-  ) {
-    const context = canvas.getContext('2d', { alpha: false });
-    if (!context) throw new Error('This browser does not support 2D canvases.');
-    this.context = context;
-    canvas.hidden = true; // until the first picture
-  }
+  constructor(private readonly events: DecoderEvents) {}
 
-  /** Drops the frames of a view that has ended. The picture stays until the next one. */
+  /** Drops the frames of a view that has ended. */
   reset(): void {
     this.generation += 1;
     this.newest = 0n;
@@ -80,9 +71,11 @@ export class Painter {
     const { generation } = this;
     const { frame } = arrived;
     try {
+      const camera = cameraFrom(frame.picture?.camera);
+      if (!camera) throw new Error('a frame without a camera');
       const decoded = frame.video ? this.video.decode(frame) : bitmapOf(frame);
       const [bitmap, depth] = await Promise.all([decoded, this.depthOf(frame)]);
-      if (generation === this.generation) this.queue({ ...arrived, bitmap, depth, decoded: performance.now() });
+      if (generation === this.generation) this.queue({ ...arrived, camera, bitmap, depth, decoded: performance.now() });
       else bitmap.close();
     } catch {
       if (generation === this.generation) this.events.broken(arrived);
@@ -112,20 +105,11 @@ export class Painter {
     this.events.skipped(decoded);
   }
 
-  /** Paints the frame that is ready, if there is one. */
-  paint(): void {
+  /** The frame that is ready, if there is one. Whoever takes it closes the bitmap. */
+  newestFrame(): DecodedFrame | undefined {
     const decoded = this.ready;
-    if (!decoded) return;
     this.ready = undefined;
-    const { bitmap, frame } = decoded;
-    // The canvas has the size of the view. A smaller picture is scaled to it; one of the same size is copied exactly.
-    const { width, height } = frame.resolution ?? bitmap;
-    if (this.canvas.width !== width) this.canvas.width = width;
-    if (this.canvas.height !== height) this.canvas.height = height;
-    this.canvas.hidden = false;
-    this.context.imageSmoothingQuality = 'medium';
-    this.context.drawImage(bitmap, 0, 0, width, height);
-    this.events.painted({ ...decoded, painted: performance.now() });
+    return decoded;
   }
 }
 
