@@ -29,7 +29,10 @@ constexpr int kSameColor = 48;
 // Where things are seen through, the frame at rest is shown where its colour does not differ by more: another depth may
 // shine through there. Frames in motion are less sharp, so that opaque ones differ everywhere.
 constexpr int kSameLook = 6000;
-constexpr double kOnEdge = 1e-9;  // barycentric
+// The cosine of the largest angle between the directions from which two eyes see what the frame at rest shows sharper.
+// Depths are rough: farther around, a surface is shown beside its place.
+constexpr double kLeastCosine = 0.906;  // 25 degrees
+constexpr double kOnEdge = 1e-9;        // barycentric
 constexpr int kMaxBands = 16;
 
 /// A vertex in the target: pixel times w, and w, where w is depth relative to the frame's; of background to any.
@@ -38,6 +41,7 @@ struct Projected {
   glm::dvec2 pixel{0};  ///< of the frame
   double inverse = 0;   ///< in the frame
   double front = 0;     ///< as in MeshVertex
+  double cosine = 1;    ///< of the angle between the rays to it from the eyes of the frame and the target
 };
 
 /// Takes points of a frame to a target.
@@ -51,11 +55,14 @@ class Projection {
 
   [[nodiscard]] Projected operator()(const MeshVertex& vertex) const {
     const glm::dvec3 ray = from_.ray(vertex.pixel);
-    const glm::dvec3 v = turn_ * ray + double{vertex.inverse} * moved_;
+    const glm::dvec3 turned = turn_ * ray;
+    const glm::dvec3 v = turned + double{vertex.inverse} * moved_;
+    const double cosine = glm::dot(v, turned) / (glm::length(v) * glm::length(ray));
     return {{to_.eta * v.x + 0.5 * to_.width * v.z, 0.5 * to_.height * v.z - to_.eta * v.y, v.z},
             glm::dvec2(vertex.pixel),
             vertex.inverse,
-            vertex.front};
+            vertex.front,
+            cosine};
   }
 
  private:
@@ -133,6 +140,7 @@ struct ScreenTriangle {
   int bottom = 0;
   float farthest = 0;  ///< least inverse depth of a corner
   float density = 0;   ///< pixels of the frame in a pixel of the target, along one direction
+  double cosine = 1;   ///< least one of a corner, see Projected
   Color far = 0;       ///< of what is behind, beside an outline
 };
 
@@ -190,6 +198,7 @@ std::optional<ScreenTriangle> screen_triangle(const MeshTriangle& mesh, const st
       for (size_t c = 0; c < 3; ++c) triangle.fill.at(c).add(part, share * channel(color, static_cast<int>(c)));
     }
     farthest = std::min(farthest, share * corner.inverse);
+    triangle.cosine = std::min(triangle.cosine, corner.cosine);
   }
   triangle.farthest = static_cast<float>(farthest);
   return triangle;
@@ -350,7 +359,8 @@ void draw_rest(const Pixels& pixels, const std::vector<ScreenTriangle>& triangle
       const float there = newest.inverse[place.at];
       const bool nothing = there < 0 || newest.density[place.at] < 0;
       const bool agrees = std::abs(place.inverse - there) <= kAgreement * std::max(place.inverse, there);
-      const bool wanted = nothing || (agrees && triangle.density >= newest.density[place.at]);
+      const bool sharper = triangle.density >= newest.density[place.at] && triangle.cosine >= kLeastCosine;
+      const bool wanted = nothing || (agrees && sharper);
       const bool certain = sheet == Sheet::kSurface;
       const Shown drawn = wanted || !certain ? shown(pixels, triangle, place) : Shown{};
       if (!drawn.own) return;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -281,6 +282,18 @@ TEST(Warp, AFrameAtRestIsNotShownWhereItIsBlurredByStretching) {
   WarpFrame newest = draw(wall, camera({0, 0, 1}, {0, 0, 0}, kFrameWidth / 2, kFrameHeight / 2), kFrameCell / 2);
   std::ranges::fill(newest.pixels.bytes, uint8_t{0});
   EXPECT_EQ(pixel_of(warp(newest, &rest, to, kBackground), kFrameWidth / 2, kFrameHeight / 2), (Color{0, 0, 0}));
+}
+
+TEST(Warp, AFrameAtRestIsNotShownWhereTheEyeHasGoneFarAround) {
+  for (const double degrees : {20.0, 30.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const geometry::CameraFrame to = camera({4 * std::sin(angle), 0, 4 * std::cos(angle)}, {0, 0, 0});
+    WarpFrame rest = draw(wall, camera({0, 0, 4}, {0, 0, 0}));
+    std::ranges::fill(rest.pixels.bytes, uint8_t{255});
+    const bool shown = pixel_of(warp(draw(wall, to), &rest, to, kBackground), kFrameWidth / 2, kFrameHeight / 2) ==
+                       Color{255, 255, 255};
+    EXPECT_EQ(shown, degrees < 25);
+  }
 }
 
 TEST(Warp, WhereNothingWasSeenIsBackground) {

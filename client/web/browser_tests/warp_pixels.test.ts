@@ -272,4 +272,17 @@ describe('a frame at rest over a newer one', () => {
     const near = await warped(farther, wall(() => [0, 255, 0]), camera(0, 4));
     expect(count(near, (_x, _y, color) => !isGreen(color))).toBe(0);
   });
+
+  it('leaves to the newer one what it saw from far around', async () => {
+    const newer = (x: number): Frame => ({ ...wall(() => [255, 0, 0]), projection: camera(x) });
+    const middle = (x: number, y: number): boolean => Math.abs(x - 160) < 4 && Math.abs(y - 90) < 4;
+    for (const [x, isShown] of [[4, isGreen], [6, isRed]] as const) { // by 22 and by 31 degrees
+      const pixels = await warped(newer(x), wall(() => [0, 255, 0]), camera(x));
+      expect(count(pixels, (x, y, color) => middle(x, y) && !isShown(color))).toBe(0);
+    }
+    // Where the newer one shows nothing, even that is better.
+    const target = { ...turned(-0.1), eye: camera(6).eye };
+    const beside = await warped(newer(6), wall(() => [0, 255, 0]), target);
+    expect(count(beside, (x, y, color) => x < 20 && Math.abs(y - 90) < 60 && !isGreen(color))).toBe(0);
+  });
 });

@@ -13,16 +13,18 @@ const float holeDepth = 1.0 - 1e-6;
 /**
  * `position`: pixel and inverse depth. `behind`: the pixel that shows what is behind the surface in front, outside of
  * the picture for the background. `other`: from a pixel and its inverse depth to the source picture of the layer above.
+ * `moved`: from the eye of the source to that of the target, in the axes of a pixel and its inverse depth, x right and
+ * y down. `cosine`: that of the angle between the rays from both eyes.
  */
 export const surfaceVertex = (over: boolean, sheets: boolean): string => `${version(over, sheets)}${depths}
 layout(location = 0) in vec3 position;
 uniform mat4 clip;
+uniform vec2 size;
 out vec2 place;
 #ifdef SHEETS
 layout(location = 1) in vec2 behind;
 layout(location = 2) in float near;
 uniform sampler2D picture;
-uniform vec2 size;
 uniform vec3 background;
 flat out vec3 far;
 flat out float front;
@@ -30,6 +32,10 @@ flat out float front;
 #ifdef OVER
 uniform mat3x4 other;
 out vec3 placeAbove;
+#else
+uniform vec3 moved;
+uniform float eta;
+out float cosine;
 #endif
 void main() {
   vec4 source = vec4(position.xy, 1.0, position.z);
@@ -42,6 +48,9 @@ void main() {
 #endif
 #ifdef OVER
   placeAbove = source * other;
+#else
+  vec3 ray = vec3((position.xy - 0.5 * size) / eta, 1.0);
+  cosine = dot(normalize(ray), normalize(ray - position.z * moved));
 #endif
 }`;
 
@@ -49,7 +58,8 @@ void main() {
  * Of the two sheets beside an outline, the far one has the pixels whose colour is that of what is behind. JPEG changes
  * colours by 2 to 4 levels. The layer above is shown where it agrees in depth and has as many pixels of its source for
  * one of the target, and where its colour is not further off than `mostOff`, squared. Inverse depths are those of the
- * window, 1 - z.
+ * window, 1 - z. Depths are rough, so that a surface is shown beside its place where the eye has gone far around it:
+ * there the layer above, by its alpha, is better than nothing only.
  */
 export const surfaceFragment = (over: boolean, sheets: boolean): string => `${version(over, sheets)}
 precision highp float;
@@ -68,12 +78,17 @@ uniform highp sampler2D aboveDepth;
 in vec3 placeAbove;
 uniform float mostOff;
 const float agreement = 0.05;
+const float better = 0.75; // alpha
 
 float density(vec2 at) {
   vec2 dx = dFdx(at);
   vec2 dy = dFdy(at);
   return abs(dx.x * dy.y - dx.y * dy.x);
 }
+#else
+in float cosine;
+const float leastCosine = 0.906; // the cosine of 25 degrees
+const float wherever = 0.6; // alpha
 #endif
 
 void main() {
@@ -88,15 +103,17 @@ void main() {
 #ifdef OVER
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 other = texelFetch(above, pixel, 0);
-  if (sharper && other.a > 0.5) {
+  if (sharper && other.a > better) {
     float here = 1.0 - gl_FragCoord.z;
     float there = 1.0 - texelFetch(aboveDepth, pixel, 0).r;
     vec3 change = other.rgb - color;
     bool alike = dot(change, change) <= mostOff;
     if (alike && abs(here - there) <= agreement * max(here, there)) color = other.rgb;
   }
-#endif
   result = vec4(color, 1.0);
+#else
+  result = vec4(color, cosine >= leastCosine ? 1.0 : wherever);
+#endif
 }`;
 
 /** A triangle that covers the target. */
@@ -216,7 +233,7 @@ void main() {
   }
 #ifdef OVER
   vec4 other = texelFetch(above, ivec2(gl_FragCoord.xy), 0);
-  if (other.a > 0.5) result = other;
+  if (other.a > 0.5) result.rgb = other.rgb;
 #endif
 }`;
 
