@@ -13,6 +13,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/vector_clones.h"
+#include "estimation/keep_up_to.h"
 #include "estimation/nearest_in_tree.h"
 #include "geometry/morton_tree.h"
 
@@ -114,17 +115,6 @@ SURFCAST_VECTOR_CLONES void measure(const Candidates& candidates, size_t from, K
     keys[i] = static_cast<Key>((bits & ~kSlotMask) | i);
   }
   keys[from] = std::numeric_limits<Key>::max();
-}
-
-/// Moves the keys up to `last` to the front; returns how many they are.
-size_t keep_up_to(Key last, size_t count, Keys& keys) {
-  size_t kept = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const Key key = keys[i];
-    keys[kept] = key;
-    kept += key <= last ? 1 : 0;
-  }
-  return kept;
 }
 
 /// Sorts at most kMaxSorted different keys: the place of each is the number of smaller ones, which takes no branches.
@@ -231,12 +221,12 @@ class Search {
     thread_local Keys keys;
     measure(candidates, slot, keys);
     const double scaled = bound * candidates.scale * candidates.scale;
-    size_t count = keep_up_to(last_key(scaled + 2 * candidates.error(scaled)), candidates.padded(), keys);
+    size_t count = keep_up_to(last_key(scaled + 2 * candidates.error(scaled)), candidates.padded(), keys.data());
     if (count < degree_) return false;
     const auto kth = static_cast<std::ptrdiff_t>(degree_ - 1);
     if (count > kMaxSorted) {
       std::nth_element(keys.begin(), keys.begin() + kth, keys.begin() + static_cast<std::ptrdiff_t>(count));
-      count = keep_up_to(last_needed(candidates, keys[degree_ - 1]), count, keys);
+      count = keep_up_to(last_needed(candidates, keys[degree_ - 1]), count, keys.data());
       if (count > kMaxSorted) return false;
     }
     sort_keys(count, keys);
