@@ -41,6 +41,7 @@
 #include "camera_paths.h"
 #include "client/window/video_decoder.h"
 #include "motion_player.h"
+#include "service/first_look.h"
 #include "support/link_relay.h"
 #include "warp/warp.h"
 #include "warp_error.h"
@@ -395,7 +396,8 @@ class Lab {
   }
 
   [[nodiscard]] picture::Image truth_at(const Camera& camera) const {
-    return bench::draw_or_exit(*renderer_, model_, bench::request_at_rest(camera, kWidth, kHeight)).image;
+    const auto asked = bench::request_at_rest(camera, kWidth, kHeight);
+    return bench::draw_or_exit(*renderer_, model_, service::with_first_look(asked, model_->info())).image;
   }
 
   [[nodiscard]] Truth truth_of(const Path& path, double from, double to, double every) const {

@@ -21,6 +21,7 @@
 #include "camera_paths.h"
 #include "encode/encode_depth.h"
 #include "geometry/camera.h"
+#include "service/first_look.h"
 #include "warp/warp.h"
 #include "warp_error.h"
 
@@ -64,7 +65,7 @@ class Subject {
     picture::PictureRequest request = bench::request_at_rest(camera, kWidth, kHeight);
     request.opacity = opacity_;
     request.depth_texels = kTexelsAtRest;
-    return bench::draw_or_exit(*renderer_, model_, request);
+    return draw(request);
   }
 
   [[nodiscard]] picture::Frame motion(const Camera& camera) const {
@@ -77,10 +78,15 @@ class Subject {
     request.blends_behind = true;
     request.opacity = opacity_;
     request.depth_texels = kTexelsInMotion;
-    return bench::draw_or_exit(*renderer_, model_, request);
+    return draw(request);
   }
 
  private:
+  /// As a server draws it.
+  [[nodiscard]] picture::Frame draw(const picture::PictureRequest& request) const {
+    return bench::draw_or_exit(*renderer_, model_, service::with_first_look(request, model_->info()));
+  }
+
   double opacity_;
   std::shared_ptr<const model::ModelFile> model_;
   std::unique_ptr<render::Renderer> renderer_;
