@@ -29,8 +29,8 @@ constexpr int kSameColor = 48;
 // Where things are seen through, the frame at rest is shown where its colour does not differ by more: another depth may
 // shine through there. Frames in motion are less sharp, so that opaque ones differ everywhere.
 constexpr int kSameLook = 6000;
-// The cosine of the largest angle between the directions from which two eyes see what the frame at rest shows sharper.
-// Depths are rough: farther around, a surface is shown beside its place.
+// The cosine of the largest angle between the rays of two eyes at which the frame at rest covers the newest one. Depths
+// are coarse, so that a surface is displaced once the eye has moved farther around it.
 constexpr double kLeastCosine = 0.906;  // 25 degrees
 constexpr double kOnEdge = 1e-9;        // barycentric
 constexpr int kMaxBands = 16;

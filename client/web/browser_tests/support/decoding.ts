@@ -10,7 +10,7 @@ interface Decoding {
   arrived: number;
   /** Older pictures do not count. */
   first: number;
-  /** Pictures, in the order in which they were first shown, as they are or warped. */
+  /** Pictures, in the order in which they were shown, as they are or warped. */
   readonly painted: number[];
   /** Of each picture: whether it is a progressive JPEG file that lacks scans. */
   readonly early: boolean[];
@@ -49,9 +49,9 @@ export const watch = (page: Page): Promise<void> =>
       }
       return bitmap;
     };
-    const shown = (bitmap: unknown): void => {
-      const number = numbers.get(bitmap as object);
-      if (number === undefined || number < decoding.first || decoding.painted.includes(number)) return;
+    const shown = (bitmap: ImageBitmap): void => {
+      const number = numbers.get(bitmap);
+      if (number === undefined || number < decoding.first || decoding.painted.at(-1) === number) return;
       decoding.painted.push(number);
       for (const [waiting, release] of decoding.waiting) {
         if (waiting > number) continue;

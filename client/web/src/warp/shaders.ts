@@ -13,8 +13,7 @@ const float holeDepth = 1.0 - 1e-6;
 /**
  * `position`: pixel and inverse depth. `behind`: the pixel that shows what is behind the surface in front, outside of
  * the picture for the background. `other`: from a pixel and its inverse depth to the source picture of the layer above.
- * `moved`: from the eye of the source to that of the target, in the axes of a pixel and its inverse depth, x right and
- * y down. `cosine`: that of the angle between the rays from both eyes.
+ * `moved`: see eyeMovement(). `cosine`: that of the angle between the rays from both eyes.
  */
 export const surfaceVertex = (over: boolean, sheets: boolean): string => `${version(over, sheets)}${depths}
 layout(location = 0) in vec3 position;
@@ -58,8 +57,8 @@ void main() {
  * Of the two sheets beside an outline, the far one has the pixels whose colour is that of what is behind. JPEG changes
  * colours by 2 to 4 levels. The layer above is shown where it agrees in depth and has as many pixels of its source for
  * one of the target, and where its colour is not further off than `mostOff`, squared. Inverse depths are those of the
- * window, 1 - z. Depths are rough, so that a surface is shown beside its place where the eye has gone far around it:
- * there the layer above, by its alpha, is better than nothing only.
+ * window, 1 - z. Depths are coarse, so that a surface is displaced once the eye has moved far around it. There the
+ * layer above only fills what the one below does not show; its alpha says so.
  */
 export const surfaceFragment = (over: boolean, sheets: boolean): string => `${version(over, sheets)}
 precision highp float;
@@ -88,7 +87,7 @@ float density(vec2 at) {
 #else
 in float cosine;
 const float leastCosine = 0.906; // the cosine of 25 degrees
-const float wherever = 0.6; // alpha
+const float fills = 0.6; // alpha
 #endif
 
 void main() {
@@ -112,7 +111,7 @@ void main() {
   }
   result = vec4(color, 1.0);
 #else
-  result = vec4(color, cosine >= leastCosine ? 1.0 : wherever);
+  result = vec4(color, cosine >= leastCosine ? 1.0 : fills);
 #endif
 }`;
 

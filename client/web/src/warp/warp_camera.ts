@@ -55,5 +55,12 @@ export function clipMatrix({ x, y, w }: Warp, width: number, height: number, nea
   return new Float32Array(columns.flat());
 }
 
+/** From the eye of a source to that of a target, in the axes of a pixel and its inverse depth: x right and y down. */
+export function eyeMovement(source: Projection, target: Projection): readonly [number, number, number] {
+  const moved = subtract(target.eye, source.eye);
+  const { right, up, forward } = source.axes;
+  return [dot(moved, right), -dot(moved, up), dot(moved, forward)];
+}
+
 /** The rows of a warp as the columns of a matrix, for (x, y, 1, d) on its left. */
 export const rowMatrix = ({ x, y, w }: Warp): Float32Array => new Float32Array([...x, ...y, ...w]);

@@ -1,9 +1,8 @@
 import type { Projection } from '../camera/projection';
-import { dot, subtract } from '../camera/vector';
 import type { Rgb } from '../state/rgb';
 import type { DepthPlane } from './depth_plane';
 import * as shaders from './shaders';
-import { clipMatrix, rowMatrix, warpBetween } from './warp_camera';
+import { clipMatrix, eyeMovement, rowMatrix, warpBetween } from './warp_camera';
 import { fillFloats, marginOf, sheetFloats, tolerance, type WarpMesh } from './warp_mesh';
 
 /** A frame that can be warped. */
@@ -273,12 +272,10 @@ export class WarpPainter {
     gl.useProgram(program);
     const clip = clipMatrix(warp, target.width, target.height, nearest);
     gl.uniformMatrix4fv(gl.getUniformLocation(program, 'clip'), false, clip);
-    const { axes, eta, eye, height, width } = source.projection;
+    const { eta, height, width } = source.projection;
     gl.uniform2f(gl.getUniformLocation(program, 'size'), width, height);
     gl.uniform1f(gl.getUniformLocation(program, 'eta'), eta);
-    const moved = subtract(target.eye, eye);
-    const [right, up, forward] = [axes.right, axes.up, axes.forward].map((axis) => dot(moved, axis));
-    gl.uniform3f(gl.getUniformLocation(program, 'moved'), right!, -up!, forward!);
+    gl.uniform3f(gl.getUniformLocation(program, 'moved'), ...eyeMovement(source.projection, target));
     const { red, green, blue } = source.background;
     gl.uniform3f(gl.getUniformLocation(program, 'background'), red / 255, green / 255, blue / 255);
     this.bindTexture(program, 'picture', 0, this.uploaded(source).texture);
