@@ -20,7 +20,7 @@
 // `rest`: instead, a movement ends after a second. PSNR of what is shown at instants after that, by a client that shows
 // whole frames only, and by one that shows early ones too (client::View::Frame::whole).
 //
-// `scales`: instead, PSNR of clients that warp with fewer pixels, and the newest frame alone.
+// `scales`: instead, PSNR of clients that warp with fewer pixels, coarser depths, and the newest frame alone.
 
 #include <algorithm>
 #include <array>
@@ -91,6 +91,7 @@ bool counts(const picture::Image& image) {
 struct Warping {
   double scale = 1;     ///< factor on width and height
   bool layered = true;  ///< the frame at rest is drawn over the newest one
+  bool coarse = false;  ///< cells of depth have twice the size
 };
 
 Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path& path, const Truth& truth,
@@ -104,13 +105,13 @@ Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path
   }
   judged.rate = count / kSeconds;
   window::VideoDecoder video;
-  const warp::WarpFrame rest = decoded(frames.front().frame, video);
+  const warp::WarpFrame rest = decoded(frames.front().frame, video, warping.coarse);
   size_t newest = 0;
   warp::WarpFrame shown = rest;
   for (size_t i = 0; i < truth.size(); ++i) {
     const double now = static_cast<double>(i) * kEvery;
     while (newest + 1 < frames.size() && frames[newest + 1].seconds + kDecode <= now) {
-      shown = decoded(frames[++newest].frame, video);
+      shown = decoded(frames[++newest].frame, video, warping.coarse);
     }
     if (!counts(truth[i])) continue;
     const geometry::CameraFrame target =
@@ -312,10 +313,11 @@ class Lab {
 
   void run_scales() {
     // Those between which the viewer chooses (client/web/src/view/warp_quality.ts).
-    constexpr Warping kWarpings[] = {{1, true}, {0.75, true}, {0.5, true}, {0.375, true}, {0.5, false}, {0.375, false}};
+    constexpr Warping kWarpings[] = {{1, true, false},  {0.75, true, false}, {0.5, true, false},
+                                     {0.5, true, true}, {0.375, true, true}, {0.375, false, true}};
     std::printf(
-        "\n| %s | link | 1: frames/s, KB/s, width | dB, worst tenth / %% off | 0.75 | | 0.5 | | 0.375 | | "
-        "0.5, newest alone | | 0.375, newest alone | |\n",
+        "\n| %s | link | 1: frames/s, KB/s, width | dB, worst tenth / %% off | 0.75 | | 0.5 | | 0.5, coarse depths | | "
+        "0.375, coarse depths | | 0.375, coarse depths, newest alone | |\n",
         name_.c_str());
     for (const Path& path : bench::paths()) {
       const Truth truth = truth_of(path, 0, kSeconds, kEvery);

@@ -91,7 +91,20 @@ std::vector<Arrived> play(const Player& player, const Path& path, double seconds
   return frames;
 }
 
-warp::WarpFrame decoded(const wire::ViewFrame& frame, window::VideoDecoder& video) {
+/// With cells of twice the size, each with its nearest surface.
+warp::DepthPlane coarser(const warp::DepthPlane& plane) {
+  warp::DepthPlane coarse{(plane.width + 1) / 2, (plane.height + 1) / 2, 2 * plane.cell, {}, plane.seen_through};
+  coarse.inverse.resize(static_cast<size_t>(coarse.width) * coarse.height);
+  for (int row = 0; row < plane.height; ++row) {
+    for (int column = 0; column < plane.width; ++column) {
+      float& nearest = coarse.inverse[static_cast<size_t>(row / 2) * coarse.width + column / 2];
+      nearest = std::max(nearest, plane.inverse[static_cast<size_t>(row) * plane.width + column]);
+    }
+  }
+  return coarse;
+}
+
+warp::WarpFrame decoded(const wire::ViewFrame& frame, window::VideoDecoder& video, bool coarse) {
   window::PixelImage image = value_or_exit(window::decode_frame(frame, video));
   for (size_t i = 0; i < image.pixels.size(); i += 4) std::swap(image.pixels[i], image.pixels[i + 2]);
   const Camera camera = from_message(frame.picture().camera());
@@ -99,7 +112,7 @@ warp::WarpFrame decoded(const wire::ViewFrame& frame, window::VideoDecoder& vide
   warp::Pixels pixels{image.width, image.height, std::move(image.pixels)};
   if (!frame.has_depth()) return {std::move(pixels), seen_by, {}, {}, false};
   const warp::DepthPlane depth = value_or_exit(warp::decode_depth(frame.depth(), image.width, image.height));
-  return warp::make_warp_frame(std::move(pixels), seen_by, depth);
+  return warp::make_warp_frame(std::move(pixels), seen_by, coarse ? coarser(depth) : depth);
 }
 
 }  // namespace surfcast::bench

@@ -37,7 +37,7 @@ struct Player {
 std::vector<Arrived> play(const Player& player, const Path& path, double seconds,
                           const std::function<void(double)>& tick, double rest = 0);
 
-/// A frame as a client has it. `video` has decoded the packets before it.
-warp::WarpFrame decoded(const wire::ViewFrame& frame, window::VideoDecoder& video);
+/// A frame as a client has it. `video` has decoded the packets before it. `coarse`: cells of depth have twice the size.
+warp::WarpFrame decoded(const wire::ViewFrame& frame, window::VideoDecoder& video, bool coarse = false);
 
 }  // namespace surfcast::bench

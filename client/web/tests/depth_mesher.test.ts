@@ -1,8 +1,8 @@
 import { afterEach, describe, expect, it, vi } from 'vitest';
 import { DepthMesher } from '../src/warp/depth_mesher';
-import { decodePlane } from '../src/warp/depth_plane';
+import { coarser, decodePlane } from '../src/warp/depth_plane';
 import type { MeshReply, MeshRequest } from '../src/warp/mesh_worker';
-import { meshedPlane } from '../src/warp/meshed_plane';
+import { meshedPlanes } from '../src/warp/meshed_plane';
 import { meshOf } from '../src/warp/warp_mesh';
 import { wirePlane } from './support/planes';
 
@@ -30,7 +30,8 @@ class FakeWorker {
     this.terminated = true;
   }
   async answer(request: MeshRequest): Promise<void> {
-    const reply: MeshReply = { id: request.id, meshed: await meshedPlane(request.plane, request.picture) };
+    const { id, plane, picture, fine } = request;
+    const reply: MeshReply = { id, meshed: await meshedPlanes(plane, picture, fine) };
     this.listeners.get('message')!({ data: structuredClone(reply) });
   }
 }
@@ -46,19 +47,23 @@ describe('planes of depth and their triangles', () => {
 
   it('are those of a plane that is decoded here, from a worker and without one', async () => {
     const plane = await decodePlane(wire, picture);
-    const expected = { plane, mesh: meshOf(plane) };
-    expect(await new DepthMesher().mesh(wire, picture)).toEqual(expected);
-    const { mesher, worker } = start();
-    const meshed = mesher.mesh(wire, picture);
-    await worker.answer(worker.requests[0]!);
-    expect(await meshed).toEqual(expected);
+    const half = coarser(plane);
+    const coarse = { plane: half, mesh: meshOf(half) };
+    for (const fine of [{ plane, mesh: meshOf(plane) }, undefined]) {
+      vi.unstubAllGlobals();
+      expect(await new DepthMesher().mesh(wire, picture, fine !== undefined)).toEqual({ fine, coarse });
+      const { mesher, worker } = start();
+      const meshed = mesher.mesh(wire, picture, fine !== undefined);
+      await worker.answer(worker.requests[0]!);
+      expect(await meshed).toEqual({ fine, coarse });
+    }
   });
 
   it('are sent to the worker without the rest of the message', () => {
     const message = new Uint8Array(1000);
     message.set(wire.codes, 500);
     const { mesher, worker } = start();
-    void mesher.mesh({ ...wire, codes: message.subarray(500, 500 + wire.codes.length) }, picture);
+    void mesher.mesh({ ...wire, codes: message.subarray(500, 500 + wire.codes.length) }, picture, true);
     expect([...worker.requests[0]!.plane.codes]).toEqual([...wire.codes]);
     expect(worker.requests[0]!.plane.codes.buffer.byteLength).toBe(wire.codes.length);
   });
@@ -66,29 +71,32 @@ describe('planes of depth and their triangles', () => {
   it('belong to their request, whatever the order of the answers', async () => {
     const { mesher, worker } = start();
     const other = { width: 52, height: 32 };
-    const [first, second] = [mesher.mesh(wire, picture), mesher.mesh(wirePlane(codes, other, 4, 1, 2), other)];
+    const [first, second] = [
+      mesher.mesh(wire, picture, true),
+      mesher.mesh(wirePlane(codes, other, 4, 1, 2), other, true),
+    ];
     await worker.answer(worker.requests[1]!);
     await worker.answer(worker.requests[0]!);
-    expect([(await first)?.plane.first, (await second)?.plane.first]).toEqual([0.5, 1]);
+    expect([(await first)?.coarse.plane.first, (await second)?.coarse.plane.first]).toEqual([0.5, 1]);
   });
 
   it('are none if the plane is damaged', async () => {
     const { mesher, worker } = start();
     const damaged = { ...wire, codes };
-    const meshed = mesher.mesh(damaged, picture);
+    const meshed = mesher.mesh(damaged, picture, true);
     await worker.answer(worker.requests[0]!);
     expect(await meshed).toBeUndefined();
     vi.unstubAllGlobals();
-    expect(await new DepthMesher().mesh(damaged, picture)).toBeUndefined();
+    expect(await new DepthMesher().mesh(damaged, picture, true)).toBeUndefined();
   });
 
   it('are made here once the worker has failed', async () => {
     const { mesher, worker } = start();
-    const waiting = mesher.mesh(wire, picture);
+    const waiting = mesher.mesh(wire, picture, true);
     worker.listeners.get('error')!({});
     expect(worker.terminated).toBe(true);
-    expect((await waiting)?.plane.width).toBe(13);
-    expect((await mesher.mesh(wire, picture))?.plane.width).toBe(13);
+    expect((await waiting)?.fine?.plane.width).toBe(13);
+    expect((await mesher.mesh(wire, picture, true))?.fine?.plane.width).toBe(13);
     expect(worker.requests.length).toBe(1);
   });
 });

@@ -7,7 +7,7 @@ import { pointAt, project, projectionOf, rayOf, type Projection } from '../src/c
 import { add, addScaled, normalize, vector, type Pixel } from '../src/camera/vector';
 import { DrawPictureSchema, ViewFrameSchema, type DepthPlane as WirePlane } from '../src/generated/surfcast_pb';
 import { FrameAssembler } from '../src/view/assembler';
-import { decodePlane } from '../src/warp/depth_plane';
+import { coarser, decodePlane } from '../src/warp/depth_plane';
 import { sameView, shownAs, type LayerFrame } from '../src/warp/layers';
 import { clipMatrix, warpBetween, type Warp } from '../src/warp/warp_camera';
 import { fillFloats, meshOf, sheetFloats, type WarpMesh } from '../src/warp/warp_mesh';
@@ -33,6 +33,13 @@ describe('a plane of depth', () => {
       const { values } = await decodePlane(wirePlane(line, size, 4, 1, 2), size);
       expect([...values].map((value) => value && Math.round(1 + 254 * Math.log2(value)))).toEqual([...line]);
     }
+  });
+
+  it('is made coarser by the nearest surfaces of two by two texels', () => {
+    const values = Float32Array.from([1, 0, 5, 2, 3, 4, 0, 0, 7]);
+    const plane = { picture, cell: 4, width: 3, height: 3, values, first: 1, last: 7, seenThrough: true };
+    const nearest = Float32Array.from([3, 5, 0, 7]);
+    expect(coarser(plane)).toEqual({ ...plane, cell: 8, width: 2, height: 2, values: nearest });
   });
 
   const damaged: Readonly<Record<string, Partial<WirePlane>>> = {

@@ -9,19 +9,18 @@ function settled(
   hasBoth = true,
 ): WarpQualityControl {
   for (let i = 0; i < warps; ++i) {
-    const { scale, layered } = control.quality;
-    const drawn = { scale, layered: layered && hasBoth };
+    const drawn = { ...control.quality, layered: control.quality.layered && hasBoth };
     if (control.measuresNext()) control.record(milliseconds(i) * costOf(drawn), drawn.layered);
   }
   return control;
 }
 
-const best = { scale: 1, layered: true };
-const threeQuarters = { scale: 0.75, layered: true };
-const half = { scale: 0.5, layered: true };
-const threeEighths = { scale: 0.375, layered: true };
-const halfAlone = { scale: 0.5, layered: false };
-const worst = { scale: 0.375, layered: false };
+const best = { scale: 1, coarse: false, layered: true };
+const threeQuarters = { scale: 0.75, coarse: false, layered: true };
+const half = { scale: 0.5, coarse: false, layered: true };
+const coarseHalf = { scale: 0.5, coarse: true, layered: true };
+const threeEighths = { scale: 0.375, coarse: true, layered: true };
+const worst = { scale: 0.375, coarse: true, layered: false };
 
 /** How many of the next eight warps are measured. */
 const measured = (control: WarpQualityControl): number =>
@@ -36,8 +35,8 @@ describe('the quality of warps', () => {
   it('is the best that is drawn in time', () => {
     expect(settled(() => 17).quality).toEqual(threeQuarters);
     expect(settled(() => 25).quality).toEqual(half);
-    expect(settled(() => 33).quality).toEqual(threeEighths);
-    expect(settled(() => 50).quality).toEqual(halfAlone);
+    expect(settled(() => 33).quality).toEqual(coarseHalf);
+    expect(settled(() => 50).quality).toEqual(threeEighths);
     expect(settled(() => 500).quality).toEqual(worst);
   });
 

@@ -2,7 +2,7 @@ import type { Camera } from '../camera/pose';
 import { FileFormat, type DrawPicture, type ViewFrame } from '../generated/surfcast_pb';
 import { cameraFrom } from '../protocol/pictures';
 import { DepthMesher } from '../warp/depth_mesher';
-import type { MeshedPlane } from '../warp/meshed_plane';
+import type { MeshedPlanes } from '../warp/meshed_plane';
 import { PacketDecoder } from './packet_decoder';
 
 const types: Readonly<Record<FileFormat, string>> = {
@@ -28,7 +28,7 @@ export interface ArrivedFrame {
 export interface DecodedFrame extends ArrivedFrame {
   readonly camera: Camera;
   readonly bitmap: ImageBitmap;
-  readonly depth: MeshedPlane | undefined;
+  readonly depth: MeshedPlanes | undefined;
   readonly decoded: number; // performance.now()
 }
 
@@ -55,7 +55,11 @@ export class FrameDecoder {
   private readonly video = new PacketDecoder();
   private readonly mesher = new DepthMesher();
 
-  constructor(private readonly events: DecoderEvents) {}
+  /** `coarse`: the fine triangles of frames in motion are not wanted now. */
+  constructor(
+    private readonly events: DecoderEvents,
+    private readonly coarse: () => boolean,
+  ) {}
 
   /** Drops the frames of a view that has ended. */
   reset(): void {
@@ -83,8 +87,9 @@ export class FrameDecoder {
   }
 
   /** Without a depth, or with a damaged one, the frame is shown as it is. */
-  private async depthOf({ depth, picture }: ViewFrame): Promise<MeshedPlane | undefined> {
-    return depth && picture?.resolution ? this.mesher.mesh(depth, picture.resolution) : undefined;
+  private async depthOf({ depth, picture, moving }: ViewFrame): Promise<MeshedPlanes | undefined> {
+    const fine = !moving || !this.coarse();
+    return depth && picture?.resolution ? this.mesher.mesh(depth, picture.resolution, fine) : undefined;
   }
 
   private queue(decoded: DecodedFrame): void {

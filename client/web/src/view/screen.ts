@@ -3,15 +3,22 @@ import { projectionOf, type Projection } from '../camera/projection';
 import type { Vector } from '../camera/vector';
 import type { Size } from '../protocol/pictures';
 import { sameView, shownAs, type LayerFrame } from '../warp/layers';
+import type { MeshedPlane } from '../warp/meshed_plane';
 import { WarpPainter, type WarpSource } from '../warp/warp_painter';
 import type { DecodedFrame } from './frame_decoder';
 import { PictureCanvas } from './picture_canvas';
-import { bestQuality, WarpQualityControl } from './warp_quality';
+import { bestQuality, WarpQualityControl, type WarpQuality } from './warp_quality';
 
 /** A frame, and what it is warped from, if it has a depth. */
 interface Shot extends LayerFrame {
   readonly bitmap: ImageBitmap;
-  readonly source: WarpSource | undefined;
+  readonly sources: WarpSources | undefined;
+}
+
+/** With both depths of a frame. */
+interface WarpSources {
+  readonly fine: WarpSource | undefined;
+  readonly coarse: WarpSource;
 }
 
 /** What was drawn last. */
@@ -65,12 +72,17 @@ export class Screen {
     return this.painter !== undefined;
   }
 
+  /** Whether frames in motion are drawn with coarse depths. */
+  get coarse(): boolean {
+    return this.control.quality.coarse;
+  }
+
   /** Takes the newest frame, and its bitmap. `sky` is the view up of a camera that states none. */
   take(frame: DecodedFrame, sky: Vector): void {
     const shot = shotOf(frame, sky);
     const former = [this.newest, this.rest];
     this.newest = shot;
-    if (!shot.moving && shot.source) this.rest = shot;
+    if (!shot.moving && shot.sources) this.rest = shot;
     for (const one of former) if (one !== this.newest && one !== this.rest) this.drop(one);
     this.tryQuality(shot);
   }
@@ -94,7 +106,7 @@ export class Screen {
   }
 
   private draw(below: Shot, above: Shot | undefined, camera: Camera, sky: Vector): boolean {
-    if (!below.source || !this.painter || this.painter.lost) return false;
+    if (!below.sources || !this.painter || this.painter.lost) return false;
     const { drawn } = this;
     this.canvas.hidden = false;
     const same = drawn?.below === below && drawn.above === above && sameView(drawn.camera, camera, sky);
@@ -102,9 +114,10 @@ export class Screen {
     const quality = same ? bestQuality : this.control.quality;
     this.drawn = { below, above, camera, best: quality === bestQuality };
     const target = targetOf(below, camera, sky, quality.scale);
-    const upper = quality.layered ? above?.source : undefined;
-    if (same || !this.control.measuresNext()) this.painter.draw(below.source, upper, target);
-    else this.drawMeasured(this.painter, below.source, upper, target);
+    const lower = sourceOf(below.sources, quality);
+    const upper = quality.layered && above?.sources ? sourceOf(above.sources, quality) : undefined;
+    if (same || !this.control.measuresNext()) this.painter.draw(lower, upper, target);
+    else this.drawMeasured(this.painter, lower, upper, target);
     this.awaitStill();
     return true;
   }
@@ -124,13 +137,14 @@ export class Screen {
   /** Before the first movement, the quality that it will have is found out with warps that are not shown. */
   private tryQuality(shot: Shot): void {
     setTimeout(() => {
-      const { source, camera } = shot;
+      const { sources, camera } = shot;
       const { painter, control } = this;
-      if (!painter || painter.lost || !source || this.rest !== shot || !this.canvas.hidden) return;
+      if (!painter || painter.lost || !sources || this.rest !== shot || !this.canvas.hidden) return;
       if (!control.isUncertain) return;
-      const { scale, layered } = control.quality;
-      const target = targetOf(shot, camera, source.projection.axes.up, scale);
-      this.drawMeasured(painter, source, layered ? source : undefined, target);
+      const { quality } = control;
+      const source = sourceOf(sources, quality);
+      const target = targetOf(shot, camera, source.projection.axes.up, quality.scale);
+      this.drawMeasured(painter, source, quality.layered ? source : undefined, target);
       this.tryQuality(shot);
     });
   }
@@ -160,7 +174,7 @@ export class Screen {
   }
 
   private drop(shot: Shot | undefined): void {
-    if (shot?.source) this.painter?.forget(shot.source);
+    for (const source of [shot?.sources?.fine, shot?.sources?.coarse]) if (source) this.painter?.forget(source);
     shot?.bitmap.close();
   }
 }
@@ -170,12 +184,16 @@ function targetOf({ view }: Shot, camera: Camera, sky: Vector, scale: number): P
   return projectionOf(camera, sky, Math.round(scale * view.width), Math.round(scale * view.height));
 }
 
+const sourceOf = ({ fine, coarse }: WarpSources, quality: WarpQuality): WarpSource =>
+  quality.coarse ? coarse : (fine ?? coarse);
+
 function shotOf({ frame, asked, camera, bitmap, depth }: DecodedFrame, sky: Vector): Shot {
   const view: Size = frame.resolution ?? bitmap;
-  const plane = depth?.plane;
+  const plane = depth?.coarse.plane;
   const fits = plane?.picture.width === bitmap.width && plane.picture.height === bitmap.height;
   const projection = projectionOf(camera, sky, bitmap.width, bitmap.height);
   const background = asked?.background ?? { red: 0, green: 0, blue: 0 };
+  const source = ({ plane, mesh }: MeshedPlane): WarpSource => ({ bitmap, depth: plane, mesh, projection, background });
   return {
     camera,
     bitmap,
@@ -184,6 +202,6 @@ function shotOf({ frame, asked, camera, bitmap, depth }: DecodedFrame, sky: Vect
     preview: frame.picture?.preview ?? false,
     asked,
     depth: fits ? plane : undefined,
-    source: fits && depth ? { bitmap, depth: plane, mesh: depth.mesh, projection, background } : undefined,
+    sources: fits && depth ? { fine: depth.fine && source(depth.fine), coarse: source(depth.coarse) } : undefined,
   };
 }

@@ -72,11 +72,12 @@ export class ViewController {
     private readonly step: (now: number) => boolean,
   ) {
     this.screen = new Screen(canvases, () => this.tick());
-    this.decoder = new FrameDecoder({
+    const events = {
       ready: () => this.tick(),
-      skipped: (frame) => this.skipped(frame),
-      broken: (frame) => this.broken(frame),
-    });
+      skipped: (frame: ArrivedFrame) => this.skipped(frame),
+      broken: (frame: ArrivedFrame) => this.broken(frame),
+    };
+    this.decoder = new FrameDecoder(events, () => this.screen.coarse);
     void decodesVideo().then((decodes) => (this.video = decodes));
     this.link = new Link(url, {
       changed: (state) => (store.link.value = state),

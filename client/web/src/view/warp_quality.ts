@@ -3,27 +3,28 @@ import { median } from './figures';
 /** How a warp in motion is drawn. */
 export interface WarpQuality {
   readonly scale: number; // factor on width and height
+  readonly coarse: boolean; // a third of the triangles
   readonly layered: boolean; // the last frame at rest is drawn over the newest one
 }
 
-export const bestQuality: WarpQuality = { scale: 1, layered: true };
+export const bestQuality: WarpQuality = { scale: 1, coarse: false, layered: true };
 
 /** Best first. docs/motion.md has their errors. */
 const qualities: readonly WarpQuality[] = [
   bestQuality,
-  { scale: 0.75, layered: true },
-  { scale: 0.5, layered: true },
-  { scale: 0.375, layered: true },
-  { scale: 0.5, layered: false },
-  { scale: 0.375, layered: false },
+  { scale: 0.75, coarse: false, layered: true },
+  { scale: 0.5, coarse: false, layered: true },
+  { scale: 0.5, coarse: true, layered: true },
+  { scale: 0.375, coarse: true, layered: true },
+  { scale: 0.375, coarse: true, layered: false },
 ];
 const last = qualities.length - 1;
 
 /**
- * The time of a warp with all pixels and both layers is 1. Each layer has its triangles and its pixels: 10 and 36 ms on
- * two cores without a GPU.
+ * The time of the best quality is 1. Both layers have triangles and pixels: 10 and 36 ms on two cores without a GPU.
  */
-export const costOf = ({ scale, layered }: WarpQuality): number => ((10 + 36 * scale ** 2) / 46) * (layered ? 1 : 0.5);
+export const costOf = ({ scale, coarse, layered }: WarpQuality): number =>
+  (((coarse ? 3.5 : 10) + 36 * scale ** 2) / 46) * (layered ? 1 : 0.5);
 
 const inTime = 12; // ms, of the 16.7 between two pictures of a display
 const easily = 7; // ms; what takes no longer is no reason for a lower quality

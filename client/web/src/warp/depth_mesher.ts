@@ -1,11 +1,11 @@
 import type { Size } from '../protocol/pictures';
 import type { EncodedPlane } from './depth_plane';
 import type { MeshReply, MeshRequest } from './mesh_worker';
-import { meshedPlane, type MeshedPlane } from './meshed_plane';
+import { meshedPlanes, type MeshedPlanes } from './meshed_plane';
 
 interface Waiting {
   readonly request: MeshRequest;
-  resolve(meshed: Promise<MeshedPlane | undefined> | MeshedPlane | undefined): void;
+  resolve(meshed: Promise<MeshedPlanes | undefined> | MeshedPlanes | undefined): void;
 }
 
 /** Of a message, which has more. Its codes are a part of the message's buffer, all of which would be copied. */
@@ -32,12 +32,12 @@ export class DepthMesher {
     this.worker.addEventListener('error', () => this.giveUp());
   }
 
-  /** Undefined if the plane is damaged, or is not that of a picture of this size. */
-  mesh(encoded: EncodedPlane, { width, height }: Size): Promise<MeshedPlane | undefined> {
+  /** As `meshedPlanes`. */
+  mesh(encoded: EncodedPlane, { width, height }: Size, fine: boolean): Promise<MeshedPlanes | undefined> {
     const { worker } = this;
     const picture = { width, height };
-    if (!worker) return meshedPlane(encoded, picture);
-    const request: MeshRequest = { id: ++this.requests, plane: plainPlane(encoded), picture };
+    if (!worker) return meshedPlanes(encoded, picture, fine);
+    const request: MeshRequest = { id: ++this.requests, plane: plainPlane(encoded), picture, fine };
     return new Promise((resolve) => {
       this.waiting.set(request.id, { request, resolve });
       worker.postMessage(request);
@@ -52,7 +52,9 @@ export class DepthMesher {
   private giveUp(): void {
     this.worker?.terminate();
     this.worker = undefined;
-    for (const { request, resolve } of this.waiting.values()) resolve(meshedPlane(request.plane, request.picture));
+    for (const { request, resolve } of this.waiting.values()) {
+      resolve(meshedPlanes(request.plane, request.picture, request.fine));
+    }
     this.waiting.clear();
   }
 }

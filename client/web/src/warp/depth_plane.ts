@@ -31,6 +31,19 @@ export async function decodePlane(plane: EncodedPlane, picture: Size): Promise<D
   return { picture, cell, width, height, values: valuesOf(codes, first, last), first, last, seenThrough };
 }
 
+/** The same depths in squares of twice the size, each with its nearest surface. */
+export function coarser(plane: DepthPlane): DepthPlane {
+  const width = Math.ceil(plane.width / 2);
+  const height = Math.ceil(plane.height / 2);
+  const values = new Float32Array(width * height);
+  for (let i = 0; i < plane.values.length; ++i) {
+    const row = Math.floor(i / plane.width);
+    const to = (row >> 1) * width + ((i - row * plane.width) >> 1);
+    values[to] = Math.max(values[to]!, plane.values[i]!);
+  }
+  return { ...plane, cell: 2 * plane.cell, width, height, values };
+}
+
 function check(holds: boolean, problem: string): asserts holds {
   if (!holds) throw new Error(`a plane of depth with ${problem}`);
 }

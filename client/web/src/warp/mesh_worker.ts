@@ -1,6 +1,6 @@
 import type { Size } from '../protocol/pictures';
 import type { EncodedPlane } from './depth_plane';
-import { meshedPlane, type MeshedPlane } from './meshed_plane';
+import { meshedPlanes, type MeshedPlane, type MeshedPlanes } from './meshed_plane';
 
 /** The worker that decodes planes of depth and makes their triangles. It answers each request, not always in order. */
 
@@ -8,16 +8,19 @@ export interface MeshRequest {
   readonly id: number;
   readonly plane: EncodedPlane;
   readonly picture: Size;
+  readonly fine: boolean;
 }
 
 export interface MeshReply {
   readonly id: number;
-  readonly meshed: MeshedPlane | undefined;
+  readonly meshed: MeshedPlanes | undefined;
 }
 
-async function answer({ id, plane, picture }: MeshRequest): Promise<void> {
-  const meshed = await meshedPlane(plane, picture);
-  const arrays: ArrayBufferView[] = meshed ? [meshed.plane.values, ...Object.values({ ...meshed.mesh })] : [];
+const arraysOf = ({ plane, mesh }: MeshedPlane): ArrayBufferView[] => [plane.values, ...Object.values({ ...mesh })];
+
+async function answer({ id, plane, picture, fine }: MeshRequest): Promise<void> {
+  const meshed = await meshedPlanes(plane, picture, fine);
+  const arrays = [meshed?.fine, meshed?.coarse].flatMap((one) => (one ? arraysOf(one) : []));
   const reply: MeshReply = { id, meshed };
   self.postMessage(reply, { transfer: arrays.map(({ buffer }) => buffer as ArrayBuffer) });
 }

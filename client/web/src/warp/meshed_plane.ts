@@ -1,5 +1,5 @@
 import type { Size } from '../protocol/pictures';
-import { decodePlane, type DepthPlane, type EncodedPlane } from './depth_plane';
+import { coarser, decodePlane, type DepthPlane, type EncodedPlane } from './depth_plane';
 import { meshOf, type WarpMesh } from './warp_mesh';
 
 /** A plane of depth, and its triangles. */
@@ -8,8 +8,20 @@ export interface MeshedPlane {
   readonly mesh: WarpMesh;
 }
 
-/** Undefined if the plane is damaged, or is not that of a picture of this size. */
-export async function meshedPlane(encoded: EncodedPlane, picture: Size): Promise<MeshedPlane | undefined> {
-  const plane = await decodePlane(encoded, picture).catch(() => undefined);
-  return plane && { plane, mesh: meshOf(plane) };
+/** The depth of a frame as it was received, and with a third of the triangles, for slow graphics. */
+export interface MeshedPlanes {
+  readonly fine: MeshedPlane | undefined; // if it is wanted: triangles take time
+  readonly coarse: MeshedPlane;
 }
+
+/** Undefined if the plane is damaged, or is not that of a picture of this size. `fine`: not only the coarse one. */
+export async function meshedPlanes(
+  encoded: EncodedPlane,
+  picture: Size,
+  fine: boolean,
+): Promise<MeshedPlanes | undefined> {
+  const plane = await decodePlane(encoded, picture).catch(() => undefined);
+  return plane && { fine: fine ? meshed(plane) : undefined, coarse: meshed(coarser(plane)) };
+}
+
+const meshed = (plane: DepthPlane): MeshedPlane => ({ plane, mesh: meshOf(plane) });
