@@ -122,7 +122,7 @@ bool begin(inout LaneState state, bool first) {
   return true;
 }
 
-#ifdef SURFCAST_SELECTS
+#if defined(SURFCAST_SELECTS) && !defined(SURFCAST_LARGE)
 void hand_over_unfinished(LaneState state) {
   uint unfinished_columns = 0u;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
@@ -139,11 +139,14 @@ void hand_over_unfinished(LaneState state) {
 // A lane starts its next tile when it has finished one, independently of other lanes, because tiles differ in the
 // number of surfaces.
 void main() {
+#if defined(SURFCAST_SELECTS) && defined(SURFCAST_LARGE)
+  first_column = gl_LocalInvocationID.x % uint(kLanesAcross);
+#endif
   LaneState state;
   bool drawing = begin(state, true);
   while (drawing) {
     vec2 pixel = vec2(frame.region.xy + state.local) + 0.5;
-#ifdef SURFCAST_SELECTS
+#if defined(SURFCAST_SELECTS) && !defined(SURFCAST_LARGE)
     state.front = draw_layer(state.tile, true, 0u, pixel, state.limit, state.light);
     hand_over_unfinished(state);
 #elif defined(SURFCAST_MARKS)

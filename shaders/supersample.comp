@@ -46,7 +46,7 @@ ivec2 place_in_tile(int bit) { return ivec2(bit % SURFCAST_TILE_WIDTH, bit / SUR
 void draw_samples(TileLists tile, int wanted, vec2 pixel, out Columns limit, out LightColumns light) {
 #if defined(SURFCAST_TOGETHER)
   draw_together(tile, wanted, pixel, limit, light);
-#elif defined(SURFCAST_SELECTS)
+#elif defined(SURFCAST_SELECTS) && !defined(SURFCAST_LARGE)
   draw(tile, wanted, pixel, limit, light);
 #else
   draw(tile, wanted, pixel, light);
@@ -77,9 +77,12 @@ shared vec4 sample_lights[SURFCAST_SILHOUETTE_LANES];  // and transmittance
 shared vec2 sample_depths[SURFCAST_SILHOUETTE_LANES];  // and opaque
 #endif
 
-void draw_sample(uint tile, ivec2 at, uint lane) {
+void draw_sample(uint tile, ivec2 at, uint bit, uint lane) {
   uint i = lane % uint(SURFCAST_SILHOUETTE_SAMPLES);
   column_places[0] = vec2(0.0);
+#ifdef SURFCAST_SELECTS
+  column_bits[0] = bit;
+#endif
   Columns limit;
   LightColumns light;
   vec2 place = vec2(frame.region.xy + at) + 0.5 + sample_place(i);
@@ -131,7 +134,7 @@ void main() {
 #endif
   uvec2 part = listed ? part_at(index) : uvec2(0u, 1u);
   ivec2 at = corner_of(part.x) + place_in_tile(findLSB(part.y));
-  if (listed) draw_sample(part.x, at, lane);
+  if (listed) draw_sample(part.x, at, part.y, lane);
   barrier();
 #ifdef SURFCAST_TOGETHER
   if (lane == 0u) write(at, mean_of_samples(0u));
@@ -170,7 +173,7 @@ void main() {
 #endif
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     if (c < count) write_mean(light[c], places[c]);
-#ifdef SURFCAST_SELECTS
+#if defined(SURFCAST_SELECTS) && !defined(SURFCAST_LARGE) && !defined(SURFCAST_TOGETHER)
     if (!any_of(unfinished_rows(light[c], limit[c]))) continue;
     hand_over(part.x, uint(findLSB(column_bits[c])), limit[c], light[c]);
 #endif

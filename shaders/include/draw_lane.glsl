@@ -101,14 +101,20 @@ bool composite_columns(inout LightColumns light, ColumnSums sums, Columns before
 #ifdef SURFCAST_SELECTS
 #include "include/selection.glsl"
 #endif
+#ifdef SURFCAST_LEAVES_TO_SAMPLES
+#include "include/leave_to_samples.glsl"
+#endif
 
 #if defined(SURFCAST_TRANSPARENT)
 #include "include/draw_transparent.glsl"
 #elif defined(SURFCAST_TOGETHER)
 #include "include/draw_together.glsl"
-#elif defined(SURFCAST_SELECTS)
+#elif defined(SURFCAST_SELECTS) && !defined(SURFCAST_LARGE)
 #include "include/draw_selected.glsl"
 #else
+#ifdef SURFCAST_SELECTS
+#include "include/select_as_needed.glsl"
+#endif
 #ifdef SURFCAST_MARKS
 #include "include/marked_entries.glsl"
 
@@ -165,14 +171,26 @@ bool draw_layer(TileLists tile, int layer, vec2 pixel, inout Columns limit, inou
 #ifdef SURFCAST_LARGE
     find_surface_large(tile.first_large, tile.larges, 0u, 1u, pixel, limit, surface, peak);
 #endif
+#ifdef SURFCAST_SELECTS
+    if (layer == 0) begin_selection();
+    smalls = find_surface_as_needed(tile, pixel, limit, light, surface, peak);
+#else
     smalls = find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
+#endif
 #ifdef SURFCAST_BLENDS_BEHIND
     list_peak = peak;
   }
   peak = list_peak;
 #endif
+#ifdef SURFCAST_LEAVES_TO_SAMPLES
+  if (layer == 0) leave_to_samples(surface, ivec2(pixel) - frame.region.xy, light);
+#endif
   float unit = fixed_unit(peak);
+#ifdef SURFCAST_SELECTS
+  accumulate_as_needed(tile, smalls, pixel, limit, surface, unit, sums);
+#else
   accumulate_small(tile.first_small, smalls, pixel, limit, surface, unit, sums);
+#endif
 #ifdef SURFCAST_LARGE
   accumulate_large(tile.first_large, tile.larges, 0u, 1u, pixel, limit, surface, unit, sums);
 #endif

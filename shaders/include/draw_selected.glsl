@@ -1,8 +1,5 @@
 // Drawing from the marked entries of a list.
 #include "include/unfinished.glsl"
-#ifdef SURFCAST_LEAVES_TO_SAMPLES
-#include "include/leave_to_samples.glsl"
-#endif
 
 // Samples, and columns behind the first surface, are drawn with the rest behind the last disc. Other pixels are mostly
 // opaque, and pay less by handing over.

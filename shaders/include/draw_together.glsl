@@ -65,19 +65,43 @@ void share_sums(inout ColumnSums sums) {
   }
 }
 
+#ifdef SURFCAST_SELECTS
+// Which of the lane's next eight entries, from k on and before `end`, may matter.
+uint marks_of_share(uint first, uint k, uint end, Wanted wanted) {
+  uint marks = 0u;
+  for (uint i = 0u; i < 8u; ++i) {
+    uint at = k + i * kShares;
+    marks |= (at < end ? mark(first + at, wanted) : 0u) << i;
+  }
+  return marks;
+}
+
+// A loop over the lane's entries from `begin` to `end` that may matter, and the slot of its present one.
+#define EACH_OF_SHARE(first, begin, end, wanted)     \
+  for (uint k = begin; k < end; k += 8u * kShares)   \
+    for (uint marks = marks_of_share(first, k, end, wanted); marks != 0u; marks &= marks - 1u)
+#define SLOT_OF_SHARE(first) slot_of(texelFetch(lists, int(first + k + uint(findLSB(marks)) * kShares)).x)
+#else
+#define EACH_OF_SHARE(first, begin, end, wanted) for (uint k = begin; k < end; k += kShares)
+#define SLOT_OF_SHARE(first) slot_of(texelFetch(lists, int(first + k)).x)
+#endif
+
 // As find_surface_small. A round has whole slices, so where the walk ends does not depend on the order of splats.
-uint find_surface_together(TileLists tile, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
+uint find_surface_together(TileLists tile, vec2 pixel, Columns limit, LightColumns light, inout Columns surface,
+                           inout float peak) {
   float footprint = 1.0 / eta();
   Columns deepest = surface;  // not used
   float least = share_surfaces(surface, peak);
+#ifdef SURFCAST_SELECTS
+  Wanted wanted = wanted_between(light, limit, surface);
+#endif
   uint slice = 0u;
   uint begin = 0u;
   while (begin < tile.smalls && !slice_is_behind(slice, least)) {
     uint end = begin;
     while (end - begin < kRound && slice < uint(frame.slices.x)) end = tile_count[tile.first_count + slice++];
-    for (uint k = begin + own_share(); k < end; k += kShares) {
-      see_small(slot_of(texelFetch(lists, int(tile.first_small + k)).x), footprint, pixel, limit, surface, deepest,
-                peak);
+    EACH_OF_SHARE(tile.first_small, begin + own_share(), end, wanted) {
+      see_small(SLOT_OF_SHARE(tile.first_small), footprint, pixel, limit, surface, deepest, peak);
     }
     begin = end;
     least = share_surfaces(surface, peak);
@@ -85,13 +109,16 @@ uint find_surface_together(TileLists tile, vec2 pixel, Columns limit, inout Colu
   return begin;
 }
 
-void accumulate_together(uint first, uint count, vec2 pixel, Columns limit, Columns surface, float unit,
-                         inout ColumnSums sums) {
+void accumulate_together(uint first, uint count, vec2 pixel, Columns limit, Columns surface, LightColumns light,
+                         float unit, inout ColumnSums sums) {
   float footprint = 1.0 / eta();
+#ifdef SURFCAST_SELECTS
+  Wanted wanted = wanted_between(light, limit, surface);
+#endif
   for (uint begin = own_share(); begin < count; begin += uint(SURFCAST_CARRY_INTERVAL) * kShares) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL) * kShares, count);
-    for (uint k = begin; k < end; k += kShares) {
-      add_small(slot_of(texelFetch(lists, int(first + k)).x), footprint, pixel, limit, surface, unit, sums);
+    EACH_OF_SHARE(first, begin, end, wanted) {
+      add_small(SLOT_OF_SHARE(first), footprint, pixel, limit, surface, unit, sums);
     }
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) sums_carry(sums[c]);
   }
@@ -112,9 +139,9 @@ bool draw_layer_together(TileLists tile, vec2 pixel, inout bool drawing, inout C
 #ifdef SURFCAST_LARGE
   find_surface_large(tile.first_large, tile.larges, own_share(), kShares, pixel, limit, surface, peak);
 #endif
-  uint smalls = find_surface_together(tile, pixel, limit, surface, peak);
+  uint smalls = find_surface_together(tile, pixel, limit, light, surface, peak);
   float unit = fixed_unit(peak);
-  accumulate_together(tile.first_small, smalls, pixel, limit, surface, unit, sums);
+  accumulate_together(tile.first_small, smalls, pixel, limit, surface, light, unit, sums);
 #ifdef SURFCAST_LARGE
   accumulate_large(tile.first_large, tile.larges, own_share(), kShares, pixel, limit, surface, unit, sums);
 #endif

@@ -25,7 +25,11 @@ uint bits_of_rows(BoolRows rows, int c) {
 }
 #endif
 
+#if SURFCAST_ROWS == 1
+float largest_of(Rows a) { return a; }
+#else
 float largest_of(Rows a) { return max(max(a.x, a.y), max(a.z, a.w)); }
+#endif
 
 BoolRows unfinished_rows(Light light, Rows limit) {
   return both(less(Rows(0.0), limit), less(Rows(kOpaque), light.transmittance));
@@ -59,11 +63,11 @@ uint marks_of_eight(uint first, Wanted wanted) {
   return marks;
 }
 
-// Marks entries. Returns the number of words with marks.
-uint select_small(uint first, uint count, Wanted wanted) {
-  uint words = 0u;
-  for (uint begin = 0u; begin < count; begin += kMarked) {
-    uint left = count - begin;
+// Marks entries from `begin`, a multiple of kMarked, to `end`, after so many words with marks. Returns the number of
+// words then.
+uint select_range(uint first, uint begin, uint end, Wanted wanted, uint words) {
+  for (; begin < end; begin += kMarked) {
+    uint left = end - begin;
     uint marks = 0u;
     for (uint i = 0u; i < kMarked; i += 8u) marks |= marks_of_eight(first + begin + i, wanted) << i;
     if (left < kMarked) marks &= (1u << left) - 1u;
@@ -73,6 +77,9 @@ uint select_small(uint first, uint count, Wanted wanted) {
   }
   return words;
 }
+
+// Marks entries. Returns the number of words with marks.
+uint select_small(uint first, uint count, Wanted wanted) { return select_range(first, 0u, count, wanted, 0u); }
 
 struct Walk {
   uint word;   // the next one

@@ -154,6 +154,18 @@ int rows_of_large(const KernelShape& shape, const Variant& variant, const KindFr
 }
 static_assert(SURFCAST_TILE_HEIGHT == SURFCAST_SILHOUETTE_SAMPLES);
 
+/// Invocations of a work group that draws a tile whose list has up to `longest` entries. `pixel_lanes` of them hold the
+/// tile's pixels. With many, lists of millions of entries are drawn to the end of all their surfaces. In software there
+/// are no more than that takes, because all wait for each other. Their number grows by four, so that programs are few.
+int lanes_of_long_list(uint32_t longest, int pixel_lanes, bool software) {
+  constexpr uint32_t kEach = 3000;  // entries that a lane draws to the end of all surfaces (draw_together.glsl)
+  constexpr int kMost = 1024;
+  if (!software) return longest > (1U << 16) ? kMost : 256;
+  int shares = 2;
+  while (shares < kMost && shares * kEach < longest) shares *= 4;
+  return std::clamp(shares * pixel_lanes, 32, kMost);
+}
+
 }  // namespace
 
 Result<Programs> Programs::create(const KernelShape& shape, const std::string& defines) {
@@ -214,15 +226,11 @@ Result<std::vector<const gl::Program*>> Programs::projections(const Variant& var
 }
 
 Result<LongListPrograms> Programs::long_lists(const Variant& variant, const PictureKinds& kinds, uint32_t longest) {
-  // Invocations of a work group: with many, lists of millions of entries are drawn to the end of all their surfaces,
-  // but shorter ones wait for the many lanes to share their sums.
-  constexpr uint32_t kVeryLong = 1U << 16;
-  const int most_lanes = longest > kVeryLong ? 1024 : 256;
-  const int tile_lanes = longest > kVeryLong || !shape_.whole_tiles ? most_lanes : 32;  // where a lane holds a tile
   Variant drawn = variant;
   drawn.blends_behind = false;
   const std::string splat = splat_defines(drawn) + "#define SURFCAST_TOGETHER\n";
-  const auto shares = [](int lanes, int pixel_lanes) {
+  const auto shares = [&](int pixel_lanes) {
+    const int lanes = lanes_of_long_list(longest, pixel_lanes, shape_.whole_tiles);
     return define("SURFCAST_PIXEL_LANES", pixel_lanes) + define("SURFCAST_SHARES", lanes / pixel_lanes);
   };
   const KindFragments fragments = fragments_of(variant, kinds);
@@ -243,19 +251,19 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
   const int small_lanes = shape_.whole_tiles ? 1 : kPixels;
   LongListPrograms programs;
   Status status = compile(programs.splat, tile_kernel(variant), false,
-                          lane_defines(shape_.whole_tiles) + shares(tile_lanes, small_lanes) + kept);
+                          lane_defines(shape_.whole_tiles) + shares(small_lanes) + kept);
   if (status) {
-    status = compile(programs.splat_large, tile_kernel(variant), true,
-                     lane_defines(false) + shares(most_lanes, kPixels) + kept);
+    status = compile(programs.splat_large, tile_kernel(variant), true, lane_defines(false) + shares(kPixels) + kept);
   }
+  const std::string selecting = selects(variant) && !variant.transparent ? "#define SURFCAST_SELECTS\n" : "";
   if (status && variant.silhouettes) {
     status = compile(programs.supersample, "supersample.comp", false,
                      define("SURFCAST_COLUMNS", pixels_at_once()) +
-                         define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES) + shares(tile_lanes, 1));
+                         define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES) + shares(1) + selecting);
   }
   if (status && variant.silhouettes) {
     status = compile(programs.supersample_large, "supersample.comp", true,
-                     lane_defines(false) + shares(most_lanes, samples_of_large(variant)) + samples_define(variant));
+                     lane_defines(false) + shares(samples_of_large(variant)) + samples_define(variant) + selecting);
   }
   if (!status) return fail(status);
   return programs;
@@ -390,13 +398,14 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   const std::string selecting = selects(variant) ? "#define SURFCAST_SELECTS\n" : "";
   const char* kernel = tile_kernel(variant);
   Status status = compile(programs.splat, plain(kernel), small + kept + selecting);
-  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + kept);
+  const std::string large_selecting = large_rows == SURFCAST_TILE_HEIGHT ? selecting : "";
+  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + kept + large_selecting);
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);
     if (status) status = compile(programs.silhouettes, plain("silhouettes.comp"), columns + samples_define(variant));
     if (status) status = compile(programs.supersample, plain("supersample.comp"), splat + columns + rows + selecting);
-    const std::string large_samples = large + samples_define(variant);
+    const std::string large_samples = large + samples_define(variant) + large_selecting;
     if (status) status = compile(programs.supersample_large, with_kinds("supersample.comp"), large_samples);
     programs.lanes_of_large_pixel = samples_of_large(variant) / large_rows;
   }
