@@ -55,7 +55,7 @@ export class FrameDecoder {
   private readonly video = new PacketDecoder();
   private readonly mesher = new DepthMesher();
 
-  /** `coarse`: the fine triangles of frames in motion are not wanted now. */
+  /** `coarse`: frames in motion are warped with coarse depths now. */
   constructor(
     private readonly events: DecoderEvents,
     private readonly coarse: () => boolean,
@@ -88,8 +88,9 @@ export class FrameDecoder {
 
   /** Without a depth, or with a damaged one, the frame is shown as it is. */
   private async depthOf({ depth, picture, moving }: ViewFrame): Promise<MeshedPlanes | undefined> {
-    const fine = !moving || !this.coarse();
-    return depth && picture?.resolution ? this.mesher.mesh(depth, picture.resolution, fine) : undefined;
+    if (!depth || !picture?.resolution) return undefined;
+    const coarse = this.coarse(); // may change while a frame at rest is shown
+    return this.mesher.mesh(depth, picture.resolution, { fine: !moving || !coarse, coarse: !moving || coarse });
   }
 
   private queue(decoded: DecodedFrame): void {

@@ -15,10 +15,10 @@ interface Shot extends LayerFrame {
   readonly sources: WarpSources | undefined;
 }
 
-/** With both depths of a frame. */
+/** With the depths of a frame, at least one. */
 interface WarpSources {
   readonly fine: WarpSource | undefined;
-  readonly coarse: WarpSource;
+  readonly coarse: WarpSource | undefined;
 }
 
 /** What was drawn last. */
@@ -185,15 +185,16 @@ function targetOf({ view }: Shot, camera: Camera, sky: Vector, scale: number): P
 }
 
 const sourceOf = ({ fine, coarse }: WarpSources, quality: WarpQuality): WarpSource =>
-  quality.coarse ? coarse : (fine ?? coarse);
+  (quality.coarse ? (coarse ?? fine) : (fine ?? coarse))!;
 
 function shotOf({ frame, asked, camera, bitmap, depth }: DecodedFrame, sky: Vector): Shot {
   const view: Size = frame.resolution ?? bitmap;
-  const plane = depth?.coarse.plane;
+  const plane = (depth?.fine ?? depth?.coarse)?.plane;
   const fits = plane?.picture.width === bitmap.width && plane.picture.height === bitmap.height;
   const projection = projectionOf(camera, sky, bitmap.width, bitmap.height);
   const background = asked?.background ?? { red: 0, green: 0, blue: 0 };
-  const source = ({ plane, mesh }: MeshedPlane): WarpSource => ({ bitmap, depth: plane, mesh, projection, background });
+  const source = (depth: MeshedPlane | undefined): WarpSource | undefined =>
+    depth && { bitmap, depth: depth.plane, mesh: depth.mesh, projection, background };
   return {
     camera,
     bitmap,
@@ -202,6 +203,6 @@ function shotOf({ frame, asked, camera, bitmap, depth }: DecodedFrame, sky: Vect
     preview: frame.picture?.preview ?? false,
     asked,
     depth: fits ? plane : undefined,
-    sources: fits && depth ? { fine: depth.fine && source(depth.fine), coarse: source(depth.coarse) } : undefined,
+    sources: fits && depth ? { fine: source(depth.fine), coarse: source(depth.coarse) } : undefined,
   };
 }

@@ -1,7 +1,7 @@
 import type { Size } from '../protocol/pictures';
 import type { EncodedPlane } from './depth_plane';
 import type { MeshReply, MeshRequest } from './mesh_worker';
-import { meshedPlanes, type MeshedPlanes } from './meshed_plane';
+import { meshedPlanes, type MeshedPlanes, type WantedPlanes } from './meshed_plane';
 
 interface Waiting {
   readonly request: MeshRequest;
@@ -33,11 +33,11 @@ export class DepthMesher {
   }
 
   /** As `meshedPlanes`. */
-  mesh(encoded: EncodedPlane, { width, height }: Size, fine: boolean): Promise<MeshedPlanes | undefined> {
+  mesh(encoded: EncodedPlane, { width, height }: Size, wanted: WantedPlanes): Promise<MeshedPlanes | undefined> {
     const { worker } = this;
     const picture = { width, height };
-    if (!worker) return meshedPlanes(encoded, picture, fine);
-    const request: MeshRequest = { id: ++this.requests, plane: plainPlane(encoded), picture, fine };
+    if (!worker) return meshedPlanes(encoded, picture, wanted);
+    const request: MeshRequest = { id: ++this.requests, plane: plainPlane(encoded), picture, wanted };
     return new Promise((resolve) => {
       this.waiting.set(request.id, { request, resolve });
       worker.postMessage(request);
@@ -53,7 +53,7 @@ export class DepthMesher {
     this.worker?.terminate();
     this.worker = undefined;
     for (const { request, resolve } of this.waiting.values()) {
-      resolve(meshedPlanes(request.plane, request.picture, request.fine));
+      resolve(meshedPlanes(request.plane, request.picture, request.wanted));
     }
     this.waiting.clear();
   }

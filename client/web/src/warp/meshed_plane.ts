@@ -8,20 +8,31 @@ export interface MeshedPlane {
   readonly mesh: WarpMesh;
 }
 
-/** The depth of a frame as it was received, and with a third of the triangles, for slow graphics. */
+/** The depth of a frame as it was received, and with a third of the triangles, for slow graphics: what is wanted. */
 export interface MeshedPlanes {
-  readonly fine: MeshedPlane | undefined; // if it is wanted: triangles take time
-  readonly coarse: MeshedPlane;
+  readonly fine: MeshedPlane | undefined;
+  readonly coarse: MeshedPlane | undefined;
 }
 
-/** Undefined if the plane is damaged, or is not that of a picture of this size. `fine`: not only the coarse one. */
+/** Triangles take time. */
+export interface WantedPlanes {
+  readonly fine: boolean;
+  readonly coarse: boolean;
+}
+
+/** Undefined if the plane is damaged, or is not that of a picture of this size. */
 export async function meshedPlanes(
   encoded: EncodedPlane,
   picture: Size,
-  fine: boolean,
+  wanted: WantedPlanes,
 ): Promise<MeshedPlanes | undefined> {
   const plane = await decodePlane(encoded, picture).catch(() => undefined);
-  return plane && { fine: fine ? meshed(plane) : undefined, coarse: meshed(coarser(plane)) };
+  return (
+    plane && {
+      fine: wanted.fine ? meshed(plane) : undefined,
+      coarse: wanted.coarse ? meshed(coarser(plane)) : undefined,
+    }
+  );
 }
 
 const meshed = (plane: DepthPlane): MeshedPlane => ({ plane, mesh: meshOf(plane) });
