@@ -23,15 +23,6 @@ struct Found {
   uint count;  // entries of the list up to the surfaces
 };
 
-#ifdef SURFCAST_BEHIND
-bool has_fragments_behind(int slot, float footprint, vec2 pixel, Rows limit) {
-  SmallSplat s = fetch_small(slot);
-  vec2 v = column(pixel, 0) - s.centre;
-  Rows z;
-  return any_of(fragments_behind(s, s.inverse_depth * footprint, v, factored_form(s.factor, v), limit, z));
-}
-#endif
-
 Found nothing_found(TileLists tile, LightColumns light) {
   Found found;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
@@ -56,10 +47,9 @@ Found find_surface_selected(TileLists tile, uint words, vec2 pixel, Columns limi
       found.count = k;
       break;
     }
-    int slot = slot_of(entry);
-    see_small(slot, footprint, pixel, limit, found.surface, found.deepest, found.peak);
+    bool behind = see_small(slot_of(entry), footprint, pixel, limit, found.surface, found.deepest, found.peak);
 #ifdef SURFCAST_BEHIND
-    if (!has_fragments_behind(slot, footprint, pixel, limit[0])) unmark(walk, k);
+    if (!behind) unmark(walk, k);
 #endif
   }
   return found;
@@ -72,14 +62,17 @@ Rows is_last(Found found, uint count, int c) {
   return found.count == count ? last : Rows(0.0);
 }
 
-void add_selected(int slot, float footprint, vec2 pixel, Columns limit, Found found, Columns last, float unit,
+// True if the splat has fragments behind the surface.
+bool add_selected(int slot, float footprint, vec2 pixel, Columns limit, Found found, Columns last, float unit,
                   inout LaneSums sums) {
   Addend a = addend(slot, footprint, unit);
+  Rows behind = Rows(0.0);
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     Rows z;
     Rows weight = weights_in(a, column(pixel, c), limit[c], z);
     BoolRows in_front = at_most(found.surface[c], z);
     Rows front = mix(Rows(0.0), weight, in_front);
+    behind = larger(behind, weight - front);
     sums_add(sums.front[c], a.value, front);
 #ifdef SURFCAST_DRAWS_REST
     sums_add(sums.rest[c], a.value, (weight - front) * last[c]);
@@ -88,6 +81,7 @@ void add_selected(int slot, float footprint, vec2 pixel, Columns limit, Found fo
     sums_add_depth(sums.front[c], unit, front, z, found.surface[c]);
 #endif
   }
+  return any_of(less(Rows(0.0), behind));
 }
 
 // As accumulate_small, for the marked entries up to the surfaces.
@@ -104,7 +98,10 @@ void accumulate_selected(TileLists tile, uint words, vec2 pixel, Columns limit, 
         continue;
       }
       int slot = slot_of(texelFetch(lists, int(tile.first_small + k)).x);
-      add_selected(slot, footprint, pixel, limit, found, last, unit, sums);
+      bool behind = add_selected(slot, footprint, pixel, limit, found, last, unit, sums);
+#ifdef SURFCAST_BEHIND
+      if (!behind) unmark(walk, k);
+#endif
     }
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
       sums_carry(sums.front[c]);

@@ -60,8 +60,8 @@ const float kInFront = 3e38;
 
 // Moves the surface of each pixel to the disc of a splat, pushed back, if that is nearer, but not before `limit` (an
 // inverse depth). `deepest`: the least inverse depth of the fragments where discs are. `peak`: the largest weight seen.
-// `footprint`: 1 / eta.
-void see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Columns surface, inout Columns deepest,
+// `footprint`: 1 / eta. False if all of the splat's plane is before `limit`.
+bool see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Columns surface, inout Columns deepest,
                inout float peak) {
   uvec4 a = texelFetch(splats, 2 * slot);
   Disc disc = fetch_disc(slot);
@@ -69,15 +69,19 @@ void see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Colum
   float inverse_depth = uintBitsToFloat(a.z);
   float unit = inverse_depth * footprint;
   vec2 slope = unpack_halves(a.w);
+  bool any_behind = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     vec2 v = column(pixel, c) - uintBitsToFloat(a.xy);
     Rows plane = plane_inverse_depth(inverse_depth, unit, slope, v);
     Rows z = fragment_inverse_depth(plane, inverse_depth, unit, disc.fall);
-    BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit[c]));
+    BoolRows behind = less(z, limit[c]);
+    any_behind = any_behind || any_of(behind);
+    BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), behind);
     Rows disc_z = disc_inverse_depth(plane, inverse_depth, unit, disc, footprint);
     surface[c] = larger(surface[c], mix(Rows(0.0), disc_z, hit));
     deepest[c] = smaller(deepest[c], mix(Rows(kInFront), z, hit));
   }
+  return any_behind;
 }
 
 // Finds the nearest surface behind `limit`, pushed back, and the largest weight of the splats up to it. Returns their
