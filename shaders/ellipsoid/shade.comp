@@ -86,11 +86,28 @@ void keep_front(ivec2 at, float nearest) {
 }
 #endif
 
+// The number of samples up to the last one with a hit. Those without are dark. (In software lanes run through all
+// branches, but end a loop when none of them is left in it.)
+int samples_to_light(ivec2 at) {
+#ifdef SURFCAST_LAYERS
+  return SURFCAST_SAMPLES;  // surfaces may be seen in all of them
+#else
+  int samples = 0;
+  for (int s = 0; s < SURFCAST_SAMPLES; ++s) {
+    int index = sample_index(at, s);
+    shades[index] = uvec2(0u);
+    if (ids[index] > 0u) samples = s + 1;
+  }
+  return samples;
+#endif
+}
+
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, int(first_group) * SURFCAST_BLOCK_HEIGHT);
   if (any(greaterThanEqual(at, frame.region.zw))) return;
   float nearest = 0.0;
-  for (int s = 0; s < SURFCAST_SAMPLES; ++s) {
+  int samples = samples_to_light(at);
+  for (int s = 0; s < samples; ++s) {
     int index = sample_index(at, s);
     uint id = ids[index];
     vec4 light = vec4(0.0);

@@ -4,9 +4,10 @@
 //   (|x|^(2/a) + |y|^(2/a))^(a/b) + |z|^(2/b) = 1
 //
 // about the axis z, that of the largest value or, of flat tensors, of the smallest one. As a and b are at most 1, the
-// left side to the power b/2 is a norm: convex along a ray, so that its least place is found by golden section. In the
-// basis of the record a ray passes m + s d, with the place m nearest to the centre and without a difference of large
-// terms, whatever the distance of the eye. Texels behind those of the hit:
+// left side to the power b/2 is a norm: convex along a ray, and between the largest coordinate and the length of a
+// vector. So the shape lies in the cube of half side 1, and a ray through the unit ball hits it. In the basis of the
+// record a ray passes m + s d, with the place m nearest to the centre and without a difference of large terms, whatever
+// the distance of the eye. Texels behind those of the hit:
 //
 //   4 to 6: the basis in the coordinates of the shape; w: a, b, r
 //   7 to 9: columns that turn its gradients into normals in the camera frame; w: colour
@@ -20,9 +21,12 @@ struct Superquadric {
   float r;
 };
 
-const float kBall = 3.0;  // square of the largest distance of the shape from its centre
-const int kSearch = 18;   // steps of the golden section: places to 6e-4
-const int kBisect = 18;
+const int kSearch = 18;  // steps of the golden section: places to 6e-4
+const int kBisect = 18;  // steps towards the hit
+
+// `steps`, so that the compiler does not know their number. It would unroll the loops, and in software lanes then run
+// through all steps, even where none of them has a ray that hits.
+int not_unrolled(int steps) { return frame.region.z > 0 ? steps : 0; }
 
 Superquadric decode_superquadric(EllipsoidHit e, int place) {
   vec4 a = uintBitsToFloat(texelFetch(records, kRecord * place + 4));
@@ -46,7 +50,7 @@ float norm_of(Superquadric q, vec3 p) {
 struct ShapeRay {
   vec3 m;
   vec3 d;
-  float first;  // the part of it in the ball, ahead of the eye
+  float first;  // the part of it in the cube, ahead of the eye
   float last;
   float speed;  // of the inverse depth, see depth_at
   float square;
@@ -65,9 +69,12 @@ ShapeRay shape_ray(Superquadric q, vec2 at) {
   vec3 m = vec3(q.r * d * a, u * aa) / square;
   ray.m = q.basis * m;
   ray.d = q.basis * (vec3(u * a, -q.r * d) / root);
-  float half_chord = sqrt(max(kBall - dot(m, m), 0.0));
-  ray.first = max(-half_chord, -q.r * d / max(u * root, 1e-30));
-  ray.last = dot(m, m) < kBall ? half_chord : -1e30;
+  vec3 steps = mix(vec3(1.0), vec3(-1.0), lessThan(ray.d, vec3(0.0))) / max(abs(ray.d), vec3(1e-20));
+  vec3 middle = -ray.m * steps;
+  vec3 begins = middle - abs(steps);
+  vec3 ends = middle + abs(steps);
+  ray.first = max(max(max(begins.x, begins.y), begins.z), -q.r * d / max(u * root, 1e-30));
+  ray.last = min(min(ends.x, ends.y), ends.z);
   ray.speed = u * root;
   ray.square = square;
   ray.ahead = q.r * d;
@@ -76,30 +83,44 @@ ShapeRay shape_ray(Superquadric q, vec2 at) {
 
 const float kMissed = 1e30;
 
-// The place of the first hit, or kMissed.
-float first_hit(Superquadric q, ShapeRay ray) {
+// Negative within the shape.
+float height_at(Superquadric q, ShapeRay ray, float s) { return norm_of(q, ray.m + s * ray.d) - 1.0; }
+
+// A place of the ray within the shape; kMissed if there is none.
+float place_within(Superquadric q, ShapeRay ray) {
   const float kGolden = 0.61803399;
-  if (!(ray.first < ray.last)) return kMissed;
+  float nearest = clamp(0.0, ray.first, ray.last);  // to the centre
+  if (height_at(q, ray, nearest) <= 0.0) return nearest;
   float low = ray.first;
   float high = ray.last;
   vec2 place = vec2(high - kGolden * (high - low), low + kGolden * (high - low));
-  vec2 value = vec2(norm_of(q, ray.m + place.x * ray.d), norm_of(q, ray.m + place.y * ray.d));
-  for (int i = 0; i < kSearch; ++i) {
-    if (min(value.x, value.y) <= 1.0) break;
-    bool before = value.x < value.y;  // the least one is before the second place
+  vec2 height = vec2(height_at(q, ray, place.x), height_at(q, ray, place.y));
+  int steps = not_unrolled(kSearch);
+  for (int i = 0; i < steps; ++i) {
+    if (min(height.x, height.y) <= 0.0) break;
+    bool before = height.x < height.y;  // the least one is before the second place
     low = before ? low : place.x;
     high = before ? place.y : high;
     float next = before ? high - kGolden * (high - low) : low + kGolden * (high - low);
-    float found = norm_of(q, ray.m + next * ray.d);
+    float found = height_at(q, ray, next);
     place = before ? vec2(next, place.x) : vec2(place.y, next);
-    value = before ? vec2(found, value.x) : vec2(value.y, found);
+    height = before ? vec2(found, height.x) : vec2(height.y, found);
   }
-  if (min(value.x, value.y) > 1.0) return kMissed;
-  float inside = value.x <= 1.0 ? place.x : place.y;
+  if (min(height.x, height.y) > 0.0) return kMissed;
+  return height.x <= 0.0 ? place.x : place.y;
+}
+
+// The place of the first hit, or kMissed. (Bisection, because the height is nearly 0 along a face and steep beside it,
+// where secants fail.)
+float first_hit(Superquadric q, ShapeRay ray) {
+  if (!(ray.first < ray.last)) return kMissed;
+  float inside = place_within(q, ray);
+  if (inside == kMissed) return kMissed;
   float outside = ray.first;
-  for (int i = 0; i < kBisect; ++i) {
+  int steps = not_unrolled(kBisect);
+  for (int i = 0; i < steps; ++i) {
     float middle = 0.5 * (inside + outside);
-    bool in_it = norm_of(q, ray.m + middle * ray.d) <= 1.0;
+    bool in_it = height_at(q, ray, middle) <= 0.0;
     inside = in_it ? middle : inside;
     outside = in_it ? outside : middle;
   }
