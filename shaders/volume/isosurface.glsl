@@ -21,10 +21,12 @@ vec2 turns_of(vec4 f) {
   return vec2(min(x.x, x.y), max(x.x, x.y));
 }
 
-// The root of f - scalar between two arguments without an extremum between them.
-float root_between(vec4 f, float scalar, float low, float high) {
+// The root of f - scalar between two arguments without an extremum between them. `steps` of bisection, 0 where the root
+// is not needed: their number is not a constant, so that the loop is not unrolled. In software all lanes would run
+// through all of it at every place of a ray.
+float root_between(vec4 f, float scalar, float low, float high, int steps) {
   bool above = cubic_at(f, high) >= scalar;
-  for (int i = 0; i < 22; ++i) {
+  for (int i = 0; i < steps; ++i) {
     float middle = 0.5 * (low + high);
     if ((cubic_at(f, middle) >= scalar) == above) {
       high = middle;
@@ -38,11 +40,13 @@ float root_between(vec4 f, float scalar, float low, float high) {
 // Where the cubic leaves the side of a scalar on which it begins (`above`: not below); 2 if it stays there. What it is
 // at 0 does not matter: there it may be on the scalar, give or take rounding.
 float leaves_side(vec4 f, float scalar, bool above) {
+  const int kSteps = 22;
   vec3 ends = vec3(turns_of(f), 1.0);
-  float from = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    if ((cubic_at(f, ends[i]) >= scalar) != above) return root_between(f, scalar, from, ends[i]);
-    from = ends[i];
-  }
-  return 2.0;
+  vec3 values = vec3(cubic_at(f, ends.x), cubic_at(f, ends.y), cubic_at(f, 1.0));
+  bvec3 left = notEqual(greaterThanEqual(values, vec3(scalar)), bvec3(above));
+  float low = left.x ? 0.0 : left.y ? ends.x : ends.y;
+  float high = left.x ? ends.x : left.y ? ends.y : 1.0;
+  bool leaves = any(left);
+  float root = root_between(f, scalar, low, high, leaves ? kSteps : 0);
+  return leaves ? root : 2.0;
 }

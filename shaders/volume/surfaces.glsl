@@ -73,6 +73,8 @@ void stop_at(Ray ray, Crossing crossing, March from, Light light_before, inout M
   add_segment(from.last, march.last, light);
 }
 
+// Most steps stay in the inner loop. What is rare is done outside of it, because software GL runs through branches that
+// no lane takes.
 void draw_stretch(Ray ray, vec2 stretch, inout Light light) {
   float near = 0.1 * kNudge * ray.step;  // a slice so near to a face lies on it
   March march = march_from(stretch.x);
@@ -83,26 +85,31 @@ void draw_stretch(Ray ray, vec2 stretch, inout Light light) {
   while (march.t < stretch.y && light.transmittance > kClear) {
     bool sliced = slice <= stretch.y + near;
     float limit = sliced ? min(max(slice, stretch.x + near), stretch.y) : stretch.y;
+    while (march.t < limit && march.t >= march.brick.leave) enter_brick(ray, march);
     March before = march;
     Light light_before = light;
-    advance(ray, limit, march, light);
-    if (march.last.t > before.last.t) {
+    Crossing crossing = Crossing(kNever, -1);
+    bool parted = false;  // the last place does not end a segment
+    while (march.t < min(march.brick.leave, limit) && light.transmittance > kClear && crossing.iso < 0 && !parted) {
+      before = march;
+      light_before = light;
+      step_in_brick(ray, limit, march, light);
+      if (march.last.t <= before.last.t) continue;
       float step = ray.step * float(1 << march.brick.level);
-      bool joined = before.known && march.known && march.last.t - before.last.t < 1.01 * step;
-      Crossing crossing = Crossing(kNever, -1);
-      if (joined) crossing = first_crossing(before.last, march.last, sides);
-      if (crossing.iso >= 0) {
-        stop_at(ray, crossing, before, light_before, march, light);
-        add_iso_surface(crossing.iso, march.last, light);
-        sides ^= 1u << uint(crossing.iso);
-        continue;
-      }
-      if (!joined) {
-        uint now = sides_of(march.last.scalar);
-        if (sided) add_between(now, march.last, sides, light);
-        sides = now;
-        sided = true;
-      }
+      parted = !(before.known && march.known && march.last.t - before.last.t < 1.01 * step);
+      if (!parted) crossing = first_crossing(before.last, march.last, sides);
+    }
+    if (crossing.iso >= 0) {
+      stop_at(ray, crossing, before, light_before, march, light);
+      add_iso_surface(crossing.iso, march.last, light);
+      sides ^= 1u << uint(crossing.iso);
+      continue;
+    }
+    if (parted) {
+      uint now = sides_of(march.last.scalar);
+      if (sided) add_between(now, march.last, sides, light);
+      sides = now;
+      sided = true;
     }
     if (sliced && march.t >= limit) {
       bool reached = limit - march.last.t <= 2.0 * kNudge * ray.step;  // but for a step over a border
