@@ -40,8 +40,9 @@ bool inside(ivec2 at) { return at.x < frame.region.z && at.y < frame.region.w; }
 
 #ifdef SURFCAST_SUPERQUADRICS
 // `dx`, `dy`: places of the samples, from the origin of the record.
-void test(Superquadric e, uint id, vec4 dx, float dy, int several, inout Row row) {
-  for (int x = 0; x < min(several, 4); ++x) {
+void test(Superquadric e, uint id, vec4 dx, float dy, inout Row row) {
+  int columns = not_unrolled(4);
+  for (int x = 0; x < columns; ++x) {
     float depth = superquadric_depth(e, vec2(dx[x], dy));
     if (depth <= row.depth[x]) continue;
     row.depth[x] = depth;
@@ -113,11 +114,10 @@ void main() {
     uint id = uint(place) + 1u;
 #ifdef SURFCAST_SUPERQUADRICS
     Superquadric glyph = decode_superquadric(e, place);
-    // The compiler shall not unroll this: it does not know that there is a list.
-    int last_row = span.x > 0u ? kRows : 0;
-    for (int r = 0; r < last_row; ++r) {
+    int all_rows = not_unrolled(kRows);
+    for (int r = 0; r < all_rows; ++r) {
       vec2 to = offset + kSamples[r % SURFCAST_SAMPLES] + vec2(0.0, r / SURFCAST_SAMPLES);
-      test(glyph, id, to.x + vec4(0.0, 1.0, 2.0, 3.0), to.y, last_row, rows[r]);
+      test(glyph, id, to.x + vec4(0.0, 1.0, 2.0, 3.0), to.y, rows[r]);
     }
 #else
     for (int r = 0; r < kRows; ++r) {

@@ -20,33 +20,27 @@ layout(std430, binding = SURFCAST_BIND_GLYPH_SHADES) writeonly buffer Shades { u
 const int kRecord = SURFCAST_SUPERQUADRIC_RECORD;
 #include "ellipsoid/superquadric.glsl"
 
-vec3 normal_of(EllipsoidHit e, int place, vec2 at, out vec3 color) {
+// The normal of a hit, and its inverse depth.
+vec3 normal_of(EllipsoidHit e, int place, vec2 at, out vec3 color, out float depth) {
   uvec4 n1 = texelFetch(records, kRecord * place + 7);
   uvec4 n2 = texelFetch(records, kRecord * place + 8);
   uvec4 n3 = texelFetch(records, kRecord * place + 9);
   color = vec3(unpackHalf2x16(n1.w), unpackHalf2x16(n2.w).x);
   mat3 normals = mat3(uintBitsToFloat(n1.xyz), uintBitsToFloat(n2.xyz), uintBitsToFloat(n3.xyz));
-  return superquadric_normal(decode_superquadric(e, place), at, normals);
-}
-
-float depth_of(EllipsoidHit e, int place, vec2 at) {
-  return superquadric_depth(decode_superquadric(e, place), at);
+  return superquadric_normal(decode_superquadric(e, place), at, normals, depth);
 }
 #else
 const int kRecord = SURFCAST_ELLIPSOID_RECORD;
 
-vec3 normal_of(EllipsoidHit e, int place, vec2 at, out vec3 color) {
+vec3 normal_of(EllipsoidHit e, int place, vec2 at, out vec3 color, out float depth) {
   uvec4 n1 = texelFetch(records, kRecord * place + 4);
   uvec4 n2 = texelFetch(records, kRecord * place + 5);
   uvec4 n3 = texelFetch(records, kRecord * place + 6);
   color = vec3(unpackHalf2x16(n1.w), unpackHalf2x16(n2.w).x);
   mat3 n = mat3(uintBitsToFloat(n1.xyz), uintBitsToFloat(n2.xyz), uintBitsToFloat(n3.xyz));
-  return hit_normal(e, n, hit_terms(e, at));
-}
-
-float depth_of(EllipsoidHit e, int place, vec2 at) {
   vec4 terms = hit_terms(e, at);
-  return e.depth * (terms.z + e.u * max(terms.w, 0.0));
+  depth = e.depth * (terms.z + e.u * max(terms.w, 0.0));
+  return hit_normal(e, n, terms);
 }
 #endif
 
@@ -59,10 +53,7 @@ vec4 shade(int place, vec2 pixel, out float depth) {
                               texelFetch(records, kRecord * place + 2), texelFetch(records, kRecord * place + 3));
   vec3 color;
   vec2 at = place_of(e, pixel);
-  vec3 n = normal_of(e, place, at, color);
-#if defined(SURFCAST_LAYERS) || defined(SURFCAST_KEEPS_FRONTS)
-  depth = depth_of(e, place, at);
-#endif
+  vec3 n = normal_of(e, place, at, color, depth);
   return vec4(lit(color, normalize(n), vec3(ray_of_pixel(pixel), 1.0)), 1.0) * frame.background.w;
 }
 

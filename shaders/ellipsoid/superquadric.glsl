@@ -127,18 +127,24 @@ float first_hit(Superquadric q, ShapeRay ray) {
   return inside;
 }
 
-// Inverse depth of the first hit at a place on the screen, 0 if there is none.
-float superquadric_depth(Superquadric q, vec2 at) {
-  ShapeRay ray = shape_ray(q, at);
-  float s = first_hit(q, ray);
+// Inverse depth of a place of the ray; 0 if there is none ahead of the eye.
+float depth_at(Superquadric q, ShapeRay ray, float s) {
   float ahead = ray.ahead + s * ray.speed;
   return s == kMissed || !(ahead > 0.0) ? 0.0 : ray.square * q.e.depth * q.r / ahead;
 }
 
-// Camera frame, of any length.
-vec3 superquadric_normal(Superquadric q, vec2 at, mat3 normals) {
+// Inverse depth of the first hit at a place on the screen, 0 if there is none.
+float superquadric_depth(Superquadric q, vec2 at) {
   ShapeRay ray = shape_ray(q, at);
-  vec3 p = ray.m + first_hit(q, ray) * ray.d;
+  return depth_at(q, ray, first_hit(q, ray));
+}
+
+// The normal at the first hit, in the camera frame and of any length, and its inverse depth.
+vec3 superquadric_normal(Superquadric q, vec2 at, mat3 normals, out float depth) {
+  ShapeRay ray = shape_ray(q, at);
+  float s = first_hit(q, ray);
+  depth = depth_at(q, ray, s);
+  vec3 p = ray.m + s * ray.d;
   vec3 a = abs(p);
   float n = joined(a.x, a.y, q.alpha);
   float g = max(joined(n, a.z, q.beta), 1e-30);
