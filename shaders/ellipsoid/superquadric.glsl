@@ -12,6 +12,7 @@
 //   4 to 6: the basis in the coordinates of the shape; w: a, b, r
 //   7 to 9: columns that turn its gradients into normals in the camera frame; w: colour
 #ifdef SURFCAST_SUPERQUADRICS
+#include "include/passage.glsl"
 
 struct Superquadric {
   EllipsoidHit e;
@@ -24,8 +25,8 @@ struct Superquadric {
 const int kSearch = 18;  // steps of the golden section: places to 6e-4
 const int kBisect = 18;  // steps towards the hit
 
-// `steps`, so that the compiler does not know their number. It would unroll the loops, and in software lanes then run
-// through all steps, even where none of them has a ray that hits.
+// `steps`, hidden from the compiler. It would unroll the loops, and in software all lanes would run through all steps,
+// even where no ray hits.
 int not_unrolled(int steps) { return frame.region.z > 0 ? steps : 0; }
 
 Superquadric decode_superquadric(EllipsoidHit e, int place) {
@@ -69,12 +70,9 @@ ShapeRay shape_ray(Superquadric q, vec2 at) {
   vec3 m = vec3(q.r * d * a, u * aa) / square;
   ray.m = q.basis * m;
   ray.d = q.basis * (vec3(u * a, -q.r * d) / root);
-  vec3 steps = mix(vec3(1.0), vec3(-1.0), lessThan(ray.d, vec3(0.0))) / max(abs(ray.d), vec3(1e-20));
-  vec3 middle = -ray.m * steps;
-  vec3 begins = middle - abs(steps);
-  vec3 ends = middle + abs(steps);
-  ray.first = max(max(max(begins.x, begins.y), begins.z), -q.r * d / max(u * root, 1e-30));
-  ray.last = min(min(ends.x, ends.y), ends.z);
+  vec2 part = passage(ray.m, 1.0 / not_zero(ray.d), vec3(-1.0), vec3(1.0));
+  ray.first = max(part.x, -q.r * d / max(u * root, 1e-30));
+  ray.last = part.y;
   ray.speed = u * root;
   ray.square = square;
   ray.ahead = q.r * d;
@@ -83,7 +81,7 @@ ShapeRay shape_ray(Superquadric q, vec2 at) {
 
 const float kMissed = 1e30;
 
-// Negative within the shape.
+// The norm less 1: negative within the shape.
 float height_at(Superquadric q, ShapeRay ray, float s) { return norm_of(q, ray.m + s * ray.d) - 1.0; }
 
 // A place of the ray within the shape; kMissed if there is none.
@@ -110,8 +108,8 @@ float place_within(Superquadric q, ShapeRay ray) {
   return height.x <= 0.0 ? place.x : place.y;
 }
 
-// The place of the first hit, or kMissed. (Bisection, because the height is nearly 0 along a face and steep beside it,
-// where secants fail.)
+// The place of the first hit, or kMissed. By bisection: the secant method fails along flat faces, where the height is
+// nearly 0, but steep beside them.
 float first_hit(Superquadric q, ShapeRay ray) {
   if (!(ray.first < ray.last)) return kMissed;
   float inside = place_within(q, ray);

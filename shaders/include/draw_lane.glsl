@@ -8,7 +8,7 @@ const float kOpaque = 1.0 / 128.0;  // transmittance below which another layer i
 const int kMaxLayers = 2;
 float list_peak;  // the largest weight of the list
 #else
-const int kMaxLayers = 8;
+const int kMaxLayers = SURFCAST_MOST_SURFACES;
 #endif
 
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };

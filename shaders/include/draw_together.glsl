@@ -14,8 +14,8 @@ const uint kRound = 32u * kShares;
 
 // The most surfaces for which loops over a list of this length stay within what software GL allows.
 int layers_for(uint entries) {
-  const uint kRounds = 24000u;  // of both passes over the list
-  return int(clamp(kRounds * kShares / max(entries, 1u), 1u, uint(kMaxLayers)));
+  uint most = uint(SURFCAST_ENTRIES_OF_LANE) * kShares / max(entries, 1u);
+  return int(clamp(most, 1u, uint(kMaxLayers)));
 }
 
 void clear_shared() {

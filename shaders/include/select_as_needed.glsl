@@ -1,5 +1,5 @@
-// Drawing from the entries of a list that matter, in tiles with large splats. A lane holds four pixels or the samples of
-// one. It marks entries only as far as its surfaces are, because large splats mostly hide the others, and keeps the
+// Drawing from the entries of a list that matter, in tiles with large splats. A lane holds four pixels, or the samples
+// of one. It marks entries only as far as its surfaces are, because large splats mostly hide the others, and keeps the
 // marks from surface to surface.
 
 uint words;     // of marks

@@ -32,6 +32,10 @@ namespace surfcast::layout {
 // Entries of a list from which on a work group draws its tile: one of SURFCAST_LIST_LENGTHS. A lane alone would come
 // near the limit of software GL for its loops (see render/tile_spans.h).
 #define SURFCAST_LONG_LIST 3584
+// Surfaces behind each other that a pixel shows, at most, and entries that a lane takes of a long list that it shares,
+// for all of these surfaces together: in two passes they are three quarters of what software GL allows.
+#define SURFCAST_MOST_SURFACES 8
+#define SURFCAST_ENTRIES_OF_LANE 24000
 // Depth slices into which the list of a tile may be divided. A list entry and the first tile of a splat hold the number
 // of a slice in the bits above SURFCAST_SLICE_SHIFT; below it are a splat's index, and a tile's row and column.
 #define SURFCAST_SLICES 16

@@ -21,8 +21,8 @@ vec2 turns_of(vec4 f) {
   return vec2(min(x.x, x.y), max(x.x, x.y));
 }
 
-// The root of f - scalar between two arguments without an extremum between them. `steps` of bisection, 0 where the root
-// is not needed: their number is not a constant, so that the loop is not unrolled. In software all lanes would run
+// The root of f - scalar between two arguments without an extremum between them. `steps`: of the bisection, 0 where the
+// root is not needed. A loop with a constant number of steps would be unrolled, and in software all lanes would run
 // through all of it at every place of a ray.
 float root_between(vec4 f, float scalar, float low, float high, int steps) {
   bool above = cubic_at(f, high) >= scalar;

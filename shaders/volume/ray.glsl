@@ -1,4 +1,6 @@
 // The ray of a pixel through a volume, and the parts of it that clip boxes leave.
+#include "include/passage.glsl"
+
 struct Ray {
   vec3 start;      // at the anchor's distance from the eye, source indices
   vec3 direction;  // source indices per world unit, no component 0
@@ -13,12 +15,6 @@ struct Ray {
   vec3 world_inverse;
 #endif
 };
-
-// `value` with no component so near to 0 that its inverse is useless.
-vec3 not_zero(vec3 value) {
-  float least = 1e-12 * max(max(abs(value.x), abs(value.y)), abs(value.z));
-  return mix(value, vec3(least), lessThan(abs(value), vec3(least)));
-}
 
 Ray ray_through(vec2 pixel) {
   const mat3 to_index = mat3(volume.to_index[0].xyz, volume.to_index[1].xyz, volume.to_index[2].xyz);
@@ -40,15 +36,6 @@ Ray ray_through(vec2 pixel) {
   ray.world_inverse = 1.0 / not_zero(rotation * unit);
 #endif
   return ray;
-}
-
-// Where a ray enters and leaves a box; it misses the box if it leaves before it enters.
-vec2 passage(vec3 start, vec3 inverse, vec3 low, vec3 high) {
-  vec3 a = (low - start) * inverse;
-  vec3 b = (high - start) * inverse;
-  vec3 near = min(a, b);
-  vec3 far = max(a, b);
-  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
 float leaves(Ray ray, vec3 low, vec3 high) { return passage(ray.start, ray.inverse, low, high).y; }

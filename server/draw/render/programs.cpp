@@ -158,7 +158,7 @@ static_assert(SURFCAST_TILE_HEIGHT == SURFCAST_SILHOUETTE_SAMPLES);
 /// tile's pixels. With many, lists of millions of entries are drawn to the end of all their surfaces. In software there
 /// are no more than that takes, because all wait for each other. Their number grows by four, so that programs are few.
 int lanes_of_long_list(uint32_t longest, int pixel_lanes, bool software) {
-  constexpr uint32_t kEach = 3000;  // entries that a lane draws to the end of all surfaces (draw_together.glsl)
+  constexpr uint32_t kEach = SURFCAST_ENTRIES_OF_LANE / SURFCAST_MOST_SURFACES;
   constexpr int kMost = 1024;
   if (!software) return longest > (1U << 16) ? kMost : 256;
   int shares = 2;
