@@ -136,6 +136,19 @@ class CandidateTree {
   CandidateTree(const Sites& sites, std::span<const uint32_t> members)
       : members_(members), positions_(positions_of(sites, members)), tree_(positions_, codes_of(positions_)) {}
 
+  /// True if so many candidates besides a site are nearer to it than `reach`.
+  [[nodiscard]] bool has_within(const Sites& sites, uint32_t site, double reach, size_t count) const {
+    const glm::dvec3& from = sites.positions[site];
+    size_t found = 0;
+    tree_.for_each_near({from, from}, reach * reach, [&](const geometry::MortonTree::Run& run) {
+      for (uint32_t i = run.first; i < run.last; ++i) {
+        found += glm::distance(from, positions_[i]) < reach && members_[i] != site ? 1 : 0;
+      }
+      return found < count;
+    });
+    return found >= count;
+  }
+
   /// The candidates nearest to a site, without itself, nearest first.
   [[nodiscard]] std::array<uint32_t, kWideNeighbours> nearest(const Sites& sites, uint32_t site) const {
     const auto nearest = nearest_in_tree<kWideNeighbours>(tree_, positions_, sites.positions[site], kWideNeighbours,
@@ -170,8 +183,10 @@ std::optional<glm::vec3> steep_plane(const SheetSearch& search, const NeighbourO
 /// The site as one of a sheet, if it and its neighbours among the candidates lie on a steep plane.
 std::optional<SheetSite> sheet_site(const SheetSearch& search, const CandidateTree& tree, const Candidate& candidate) {
   const uint32_t site = candidate.site;
+  // They are not sparser than the surface beside them.
+  const double reach = double{kSparser} * candidate.denser;
+  if (tree.has_within(search.sites, site, reach, kNearNeighbours)) return std::nullopt;
   const std::array<uint32_t, kWideNeighbours> nearest = tree.nearest(search.sites, site);
-  if (distance(search, site, nearest[kNearNeighbours - 1]) < double{kSparser} * candidate.denser) return std::nullopt;
   const NeighbourOffsets offsets(search.sites, site, nearest);
   const std::optional<glm::vec3> normal = steep_plane(search, offsets);
   if (!normal) return std::nullopt;

@@ -206,6 +206,16 @@ struct SurfaceSpacing::Index {
     return *middle;
   }
 
+  /// No median at the places is smaller: of the nearest of any, no more have smaller radii than of all that are near.
+  [[nodiscard]] float least_median(const NearSamples& near) const {
+    std::array<float, kMaxNear> sorted;
+    const auto end = std::transform(near.numbers.begin(), near.numbers.begin() + near.count, sorted.begin(),
+                                    [this](uint32_t number) { return radii[number]; });
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(degree() / 2);
+    std::nth_element(sorted.begin(), middle, end);
+    return *middle;
+  }
+
   /// Finds all samples that are among the nearest of any place in the box. False if they are too many.
   bool gather(const Box& box, NearSamples& near) const {
     near.count = 0;
@@ -240,8 +250,7 @@ struct SurfaceSpacing::Index {
   }
 
   void find_together(const Places& places, const Enough& enough, NearSamples& near, std::span<float> found) const {
-    const auto smaller = [this](uint32_t a, uint32_t b) { return radii[a] < radii[b]; };
-    const float least = radii[*std::min_element(near.numbers.begin(), near.numbers.begin() + near.count, smaller)];
+    const float least = least_median(near);
     std::optional<glm::dvec3> last;  // place that was searched, whose nearest samples are within `bound`
     double bound = near.bound;
     for (size_t i = 0; i < found.size(); ++i) {
