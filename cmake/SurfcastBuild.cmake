@@ -38,6 +38,12 @@ if(CCACHE_PROGRAM)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env ${ccache_settings} ${CCACHE_PROGRAM})
 endif()
 
+# GCC looks for unused memory whenever its heap has doubled. Joined sources take 0.8 to 1.2 GB, and so a tenth of their
+# compile time goes into this.
+if(SURFCAST_JOIN AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(--param=ggc-min-heapsize=1048576)
+endif()
+
 # mold links all programs in a quarter of the time of GNU ld. Modules are left to the latter: mold also takes members of
 # archives that they do not need, which are not position-independent.
 find_program(MOLD_PROGRAM mold)
