@@ -136,7 +136,7 @@ class CandidateTree {
   CandidateTree(const Sites& sites, std::span<const uint32_t> members)
       : members_(members), positions_(positions_of(sites, members)), tree_(positions_, codes_of(positions_)) {}
 
-  /// True if so many candidates besides a site are nearer to it than `reach`.
+  /// True if at least `count` candidates, without the site itself, are nearer to it than `reach`.
   [[nodiscard]] bool has_within(const Sites& sites, uint32_t site, double reach, size_t count) const {
     const glm::dvec3& from = sites.positions[site];
     size_t found = 0;
@@ -183,7 +183,7 @@ std::optional<glm::vec3> steep_plane(const SheetSearch& search, const NeighbourO
 /// The site as one of a sheet, if it and its neighbours among the candidates lie on a steep plane.
 std::optional<SheetSite> sheet_site(const SheetSearch& search, const CandidateTree& tree, const Candidate& candidate) {
   const uint32_t site = candidate.site;
-  // They are not sparser than the surface beside them.
+  // The candidates here must be sparser than the surface beside them.
   const double reach = double{kSparser} * candidate.denser;
   if (tree.has_within(search.sites, site, reach, kNearNeighbours)) return std::nullopt;
   const std::array<uint32_t, kWideNeighbours> nearest = tree.nearest(search.sites, site);

@@ -198,22 +198,24 @@ struct SurfaceSpacing::Index {
   }
 
   [[nodiscard]] float median(const Nearest& nearest) const {
-    std::array<float, kNearest> sorted{};
-    const auto end = std::transform(nearest.all().begin(), nearest.all().end(), sorted.begin(),
-                                    [this](const Found& found) { return radii[found.second]; });
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(nearest.all().size() / 2);
-    std::nth_element(sorted.begin(), middle, end);
+    std::array<float, kNearest> found{};
+    std::ranges::transform(nearest.all(), found.begin(), [this](const Found& sample) { return radii[sample.second]; });
+    return of_median_rank({found.begin(), nearest.all().size()});
+  }
+
+  /// Of some radii, the one whose rank the median has among those of the nearest samples. Reorders them.
+  [[nodiscard]] float of_median_rank(std::span<float> some) const {
+    const auto middle = some.begin() + static_cast<std::ptrdiff_t>(degree() / 2);
+    std::nth_element(some.begin(), middle, some.end());
     return *middle;
   }
 
-  /// No median at the places is smaller: of the nearest of any, no more have smaller radii than of all that are near.
+  /// A lower bound of the median at every place: adding samples to the nearest ones can only lower this rank's radius.
   [[nodiscard]] float least_median(const NearSamples& near) const {
-    std::array<float, kMaxNear> sorted;
-    const auto end = std::transform(near.numbers.begin(), near.numbers.begin() + near.count, sorted.begin(),
-                                    [this](uint32_t number) { return radii[number]; });
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(degree() / 2);
-    std::nth_element(sorted.begin(), middle, end);
-    return *middle;
+    std::array<float, kMaxNear> found;
+    std::transform(near.numbers.begin(), near.numbers.begin() + near.count, found.begin(),
+                   [this](uint32_t number) { return radii[number]; });
+    return of_median_rank({found.begin(), near.count});
   }
 
   /// Finds all samples that are among the nearest of any place in the box. False if they are too many.
