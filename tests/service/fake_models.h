@@ -68,7 +68,8 @@ struct FakeRendererControl {
   std::atomic<int> cancelled = 0;      ///< pictures cancelled while they were drawn
   std::atomic<int> nested_frames = 0;  ///< times that other pictures were drawn during a slow picture
   static constexpr int kWarmUps = 3;
-  std::atomic<int> warmed_up = 0;                 ///< number of warm-up steps done
+  std::atomic<int> warmed_up = 0;                 ///< number of warm-up steps begun
+  std::atomic<bool> slow_to_warm_up = false;      ///< a step continues until it is cancelled
   std::atomic<int> frame_ms = 0;                  ///< least duration of a picture
   std::atomic<bool> slow = false;                 ///< a picture continues until it is cancelled or `slow` becomes false
   std::atomic<bool> slow_motion = true;           ///< motion pictures are slow too
@@ -132,7 +133,11 @@ class FakeRenderer : public FrameRenderer {
     frame.stats.stages = {{"draw", 1.5}};
     return frame;
   }
-  bool warm_up() override { return ++control_->warmed_up < FakeRendererControl::kWarmUps; }
+  bool warm_up(const Preemption& preemption) override {
+    ++control_->warmed_up;
+    while (control_->slow_to_warm_up && !preemption.cancelled()) (void)preemption.yield_to_urgent();
+    return control_->warmed_up < FakeRendererControl::kWarmUps;
+  }
   [[nodiscard]] const picture::DeviceInfo& device() const override { return device_; }
   [[nodiscard]] int max_resolution() const override { return 8192; }
 

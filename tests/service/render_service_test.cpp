@@ -278,6 +278,20 @@ TEST_F(RenderServiceTest, TheRendererWarmsUpWhileNobodyWaitsAndAgainAfterAPictur
   wait_for_warm_ups(FakeRendererControl::kWarmUps + 1);
 }
 
+TEST_F(RenderServiceTest, APictureEndsTheStepThatWarmsUp) {
+  control_->slow_to_warm_up = true;
+  start();
+  while (control_->warmed_up == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(draw(1, job_for("cube")).second.get());
+}
+
+TEST_F(RenderServiceTest, StoppingEndsTheStepThatWarmsUp) {
+  control_->slow_to_warm_up = true;
+  start();
+  while (control_->warmed_up == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  service_.reset();
+}
+
 TEST_F(RenderServiceTest, RemoteModelsHaveARendererOfTheirOwnThatHoldsUpNobodyElse) {
   models_.remote_model = "teapot";
   const auto remote = std::make_shared<FakeRendererControl>();

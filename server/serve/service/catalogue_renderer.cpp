@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 #include <deque>
 #include <map>
 #include <memory>
@@ -32,14 +31,14 @@ class CatalogueRenderer : public FrameRenderer {
   }
   /// Draws the next warm-up picture: of the model that was most recently drawn for the first time, or before that, of
   /// the first model in the catalogue.
-  bool warm_up() override {
+  bool warm_up(const Preemption& preemption) override {
     release_removed();
     if (shader_warm_up_ == ShaderWarmUp::kOff) return false;
     if (!next_model_.empty()) begin_warm_up(std::exchange(next_model_, {}));
     if (warm_ups_.empty()) return false;
-    const std::atomic<bool> never{false};
-    (void)renderer_->draw(warming_model_, warm_ups_.front(),
-                          never);  // a failure is reported when the model is requested
+    // A failure is reported when the model is requested.
+    (void)renderer_->draw(warming_model_, warm_ups_.front(), preemption);
+    if (preemption.cancelled()) return true;
     warm_ups_.pop_front();
     if (warm_ups_.empty()) warming_model_.reset();
     return !warm_ups_.empty();

@@ -43,6 +43,7 @@ struct RenderService::State {
 
   // Render thread.
   void run(const FrameRendererFactory& make_renderer, std::promise<Status> started);
+  [[nodiscard]] bool warm_up(FrameRenderer& renderer);
   [[nodiscard]] bool idle_for_a_moment();
   [[nodiscard]] WaitingStills waiting_stills() const;
   [[nodiscard]] bool may_draw(Priority priority) const;

@@ -1,6 +1,7 @@
 // The render thread of RenderService: which picture is drawn next, and which ones are drawn in the middle of another.
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -39,7 +40,7 @@ void RenderService::State::run(const FrameRendererFactory& make_renderer, std::p
   bool more_to_warm_up = true;
   for (;;) {
     if (more_to_warm_up && idle_for_a_moment()) {
-      more_to_warm_up = guarded([&]() -> Result<bool> { return (*renderer)->warm_up(); }).value_or(false);
+      more_to_warm_up = warm_up(**renderer);
       if (!more_to_warm_up) ::malloc_trim(0);  // what large pictures have left goes back to the system
       continue;
     }
@@ -52,6 +53,17 @@ void RenderService::State::run(const FrameRendererFactory& make_renderer, std::p
       draw_still(**renderer, job, /*depth=*/0);
     }
   }
+}
+
+/// Does a step of the renderer's work for later, until a job can be drawn. False when no work remains.
+bool RenderService::State::warm_up(FrameRenderer& renderer) {
+  std::atomic<bool> wanted{false};
+  const Preemption until_wanted(wanted, [&] {
+    const std::lock_guard lock(mutex);
+    wanted = stopping || next_priority();
+    return false;
+  });
+  return guarded([&]() -> Result<bool> { return renderer.warm_up(until_wanted); }).value_or(false);
 }
 
 /// Waits for a moment. True if no job could be drawn meanwhile.
