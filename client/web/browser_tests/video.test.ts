@@ -45,6 +45,7 @@ describe('a view over a thin link', () => {
   });
 
   it('shows a frame at rest from coarse to fine while it arrives', async () => {
+    await yard.reopen({ viewport: { width: 1200, height: 640 } }); // larger frames arrive in more pieces
     await yard.page.addInitScript(() => {
       window.paintedFiles = [];
       const files = new WeakMap<object, Blob>();

@@ -26,7 +26,8 @@ export async function sharedBrowser(): Promise<Browser> {
   return shared;
 }
 
-export const desktop: BrowserContextOptions = { viewport: { width: 1200, height: 640 } };
+/** Small: server and browser draw in software. */
+export const desktop: BrowserContextOptions = { viewport: { width: 960, height: 540 } };
 export const phone: BrowserContextOptions = { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true };
 
 /** A page whose errors fail the test that uses it. */
