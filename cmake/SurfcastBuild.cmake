@@ -250,10 +250,33 @@ surfcast_headers(surfcast_shared INTERFACE shared ${PROJECT_SOURCE_DIR}/shaders/
 find_package(glm REQUIRED)
 target_link_libraries(surfcast_shared INTERFACE glm::glm)
 
-# surfcast_test_data(FILE...): defines the path of tests/data for these test sources only. Other sources do not contain
-# the path of the checkout, so that a compiler cache can share them between checkouts.
-function(surfcast_test_data)
-  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS SURFCAST_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+# surfcast_test_paths(TEST NAME...): the programs that the test starts, as targets, and the files and folders that it
+# reads, relative to the checkout. path_of (tests/support/path_of.h) gives their paths by these names. A small source
+# has them, and no other, so that a compiler cache can share all others between checkouts.
+function(surfcast_test_paths test)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${test}_paths.cpp)
+  set(cases)
+  set(number 0)
+  foreach(name IN LISTS ARGN)
+    math(EXPR number "${number} + 1")
+    string(APPEND cases "  if (name == \"${name}\") return SURFCAST_PATH_${number};\n")
+    set(path ${PROJECT_SOURCE_DIR}/${name})
+    if(NOT EXISTS ${path})
+      set(path $<TARGET_FILE:${name}>)
+      add_dependencies(${test} ${name})
+    endif()
+    set_property(SOURCE ${source} APPEND PROPERTY COMPILE_DEFINITIONS SURFCAST_PATH_${number}="${path}")
+  endforeach()
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT "#include \"support/path_of.h\"
+
+#include <cstdlib>
+
+std::string surfcast::path_of(std::string_view name) {
+${cases}  std::abort();
+}
+")
+  set_property(SOURCE ${source} PROPERTY SKIP_PRECOMPILE_HEADERS ON)  # reading them takes longer
+  target_sources(${test} PRIVATE ${source})
 endfunction()
 
 # Test code runs once, so less optimization saves more compile time than it costs. Tests that compare pictures compute

@@ -9,6 +9,7 @@
 
 #include "client/run_program.h"
 #include "net/net_fixture.h"
+#include "support/path_of.h"
 
 namespace surfcast::client {
 namespace {
@@ -33,7 +34,7 @@ class ProgramTest : public net::NetFixture {
 
   /// Standard error becomes part of the output.
   [[nodiscard]] static ProgramOutcome run(const std::string& arguments) {
-    return run_program(SURFCAST_CLIENT " " + arguments + " 2>&1");
+    return run_program(path_of("surfcast") + " " + arguments + " 2>&1");
   }
   [[nodiscard]] std::string url() const { return protocol::to_string(endpoint()); }
   [[nodiscard]] size_t entries() const {
@@ -137,7 +138,7 @@ TEST_F(ProgramTest, HelpAndVersionEndWithZero) {
 TEST_F(ProgramTest, AnInterruptGivesThePictureUpAtTheServer) {
   control_->slow = true;
   const pid_t client =
-      start_program({SURFCAST_CLIENT, "render", url() + "/cube", "--output", (folder_ / "out.png").string()});
+      start_program({path_of("surfcast"), "render", url() + "/cube", "--output", (folder_ / "out.png").string()});
   ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
   ASSERT_EQ(::kill(client, SIGINT), 0);
   EXPECT_EQ(wait_for_program(client), 1);

@@ -15,6 +15,7 @@
 
 #include "client/run_program.h"
 #include "cmd/wavy_scan.h"
+#include "support/path_of.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -45,14 +46,17 @@ class BuildStepProgramsTest : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  [[nodiscard]] Words step(const Words& words) const { return Words{SURFCASTD} + words + Words{"--work", work()}; }
+  [[nodiscard]] Words step(const Words& words) const {
+    return Words{path_of("surfcastd")} + words + Words{"--work", work()};
+  }
   [[nodiscard]] std::string work() const { return (folder_ / "work").string(); }
   [[nodiscard]] std::string model() const { return (folder_ / "model.surf").string(); }
 
   /// The bytes of the model that one process builds in so many parts.
   [[nodiscard]] std::string built_at_once(int parts) const {
     const fs::path target = folder_ / "at_once.surf";
-    EXPECT_EQ(run({SURFCASTD, "build", scan_.string(), "--parts", std::to_string(parts), "--output", target.string()}),
+    EXPECT_EQ(run({path_of("surfcastd"), "build", scan_.string(), "--parts", std::to_string(parts), "--output",
+                   target.string()}),
               0);
     return bytes_in(target);
   }
@@ -60,7 +64,7 @@ class BuildStepProgramsTest : public ::testing::Test {
   /// Kills a step at a moment of its writing, which it reaches, and then runs it again to its end.
   void kill_and_repeat(const Words& words, int moment) const {
     const Words stopped =
-        Words{"/usr/bin/env", "LD_PRELOAD=" STOP_AT_CALL, "SURFCAST_STOP_AT=" + std::to_string(moment),
+        Words{"/usr/bin/env", "LD_PRELOAD=" + path_of("stop_at_call"), "SURFCAST_STOP_AT=" + std::to_string(moment),
               "SURFCAST_STOP_SIGNAL=" + std::to_string(SIGKILL)} +
         step(words);
     EXPECT_EQ(run(stopped), 128 + SIGKILL) << words[0] << " at " << moment;
@@ -72,7 +76,7 @@ class BuildStepProgramsTest : public ::testing::Test {
             "make",
             "-s",
             "-f",
-            SURFCAST_EXAMPLES "/Makefile",
+            path_of("deploy/build-in-parts") + "/Makefile",
             "-j2",
             "SURFCASTD=" + program,
             "SCANS=" + scan_.string(),
@@ -118,7 +122,8 @@ TEST_F(BuildStepProgramsTest, MissingPartsAreOneLineAndAFailure) {
   ASSERT_EQ(run(step({"build-plan", scan_.string(), "--parts", "4"})), 0);
   ASSERT_EQ(run(step({"build-part", "3"})), 0);
   const fs::path said = folder_ / "said";
-  const std::string line = SURFCASTD " build-merge --work " + work() + " --output " + model() + " 2> " + said.string();
+  const std::string line =
+      path_of("surfcastd") + " build-merge --work " + work() + " --output " + model() + " 2> " + said.string();
   EXPECT_EQ(run({"/bin/sh", "-c", line}), 1);
   const std::string text = bytes_in(said);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
@@ -127,7 +132,7 @@ TEST_F(BuildStepProgramsTest, MissingPartsAreOneLineAndAFailure) {
 }
 
 TEST_F(BuildStepProgramsTest, MakeRunsTheSteps) {
-  const Words make = call_of_make(SURFCASTD);
+  const Words make = call_of_make(path_of("surfcastd"));
   ASSERT_EQ(run(make), 0);
   EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
   EXPECT_FALSE(has_parts());
@@ -145,20 +150,19 @@ TEST_F(BuildStepProgramsTest, MakeRunsTheSteps) {
 
 TEST_F(BuildStepProgramsTest, ARunOfMakeThatFailsKeepsItsParts) {
   const fs::path failing = folder_ / "failing";  // in the step of the signs
-  std::ofstream(failing) << "#!/bin/sh\n[ $1 != build-signs ] && exec " SURFCASTD " \"$@\"\n";
+  std::ofstream(failing) << "#!/bin/sh\n[ $1 != build-signs ] && exec " + path_of("surfcastd") + " \"$@\"\n";
   fs::permissions(failing, fs::perms::owner_all);
   EXPECT_NE(run(call_of_make(failing.string())), 0);
   for (int part = 1; part <= 4; ++part) EXPECT_TRUE(fs::exists(work() + "/part-" + std::to_string(part))) << part;
-  EXPECT_EQ(run(call_of_make(SURFCASTD)), 0);
+  EXPECT_EQ(run(call_of_make(path_of("surfcastd"))), 0);
   EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
 }
 
 TEST_F(BuildStepProgramsTest, SnakemakeRunsTheSteps) {
   if (run({"/bin/sh", "-c", "command -v snakemake > /dev/null"}) != 0) GTEST_SKIP() << "no snakemake here";
-  const std::string line = "cd " + folder_.string() +
-                           " && snakemake -q --cores 2 -s " SURFCAST_EXAMPLES "/Snakefile --config surfcastd=" SURFCASTD
-                           " scans=" +
-                           scan_.string() + " parts=4 work=" + work() + " model=" + model();
+  const std::string line = "cd " + folder_.string() + " && snakemake -q --cores 2 -s " +
+                           path_of("deploy/build-in-parts") + "/Snakefile --config surfcastd=" + path_of("surfcastd") +
+                           " scans=" + scan_.string() + " parts=4 work=" + work() + " model=" + model();
   ASSERT_EQ(run({"/bin/sh", "-c", line}), 0);
   EXPECT_TRUE(bytes_in(model()) == built_at_once(4));
   EXPECT_FALSE(has_parts());
@@ -184,9 +188,9 @@ TEST_F(BuildStepProgramsTest, TheScriptOfSlurmSubmitsTheSteps) {
   const Words line{"/usr/bin/env",
                    "PATH=" + folder_.string() + ":" + std::getenv("PATH"),
                    "JOBS=" + (folder_ / "jobs").string(),
-                   "SURFCASTD=" SURFCASTD,
+                   "SURFCASTD=" + path_of("surfcastd"),
                    "PARTS=4",
-                   SURFCAST_EXAMPLES "/slurm.sh",
+                   path_of("deploy/build-in-parts") + "/slurm.sh",
                    model(),
                    work(),
                    scan_.string()};

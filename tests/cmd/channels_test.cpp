@@ -18,6 +18,7 @@
 #include "geometry/camera.h"
 #include "model/model_file.h"
 #include "pick/pick_surfel.h"
+#include "support/path_of.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -79,7 +80,8 @@ class ChannelsTest : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   [[nodiscard]] int run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" SURFCASTD "' " + arguments + " >out 2>err";
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" + path_of("surfcastd") + "' " + arguments + " >out 2>err";
     return std::system(command.c_str());
   }
   [[nodiscard]] std::string error() const { return text_of("err"); }
@@ -139,7 +141,7 @@ class ChannelsTest : public ::testing::Test {
 };
 
 TEST_F(ChannelsTest, OfTheLionAgreeWithPicks) {
-  ASSERT_EQ(run("build '" SURFCAST_TEST_DATA "/lion.drc' --output model.surf"), 0) << error();
+  ASSERT_EQ(run("build '" + path_of("tests/data") + "/lion.drc' --output model.surf"), 0) << error();
   const geometry::CameraFrame frame = render("depth,normal,position,coverage,surfel");
   EXPECT_GT(compare(frame), 150);
   const ExrFile file(folder_ / "picture.exr");
@@ -163,7 +165,7 @@ TEST_F(ChannelsTest, FarFromTheOriginAgreeWithPicks) {
 }
 
 TEST_F(ChannelsTest, LeaveTheColorsAsTheyAre) {
-  ASSERT_EQ(run("build '" SURFCAST_TEST_DATA "/lion.drc' --output model.surf"), 0) << error();
+  ASSERT_EQ(run("build '" + path_of("tests/data") + "/lion.drc' --output model.surf"), 0) << error();
   render("depth,coverage");
   const ExrFile with(folder_ / "picture.exr");
   ASSERT_EQ(run("render model.surf --output plain.exr --resolution 400,300"), 0) << error();

@@ -5,6 +5,7 @@
 
 #include "cmd/serve_fixture.h"
 #include "net/raw_socket.h"
+#include "support/path_of.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -21,7 +22,7 @@ class LimitsTest : public ServeTest {
     return socket.read_http();
   }
   [[nodiscard]] static client::ProgramOutcome run(const std::string& arguments) {
-    return client::run_program(SURFCAST_SERVER " " + arguments + " 2>&1");
+    return client::run_program(path_of("surfcastd") + " " + arguments + " 2>&1");
   }
   [[nodiscard]] std::string other_scan() const {
     std::ofstream(folder_ / "other.xyz") << "0 0 5\n1 0 5\n0 1 5\n1 1 5\n";
@@ -46,7 +47,7 @@ TEST_F(LimitsTest, ConnectionsBeyondTheLimitAreRefused) {
   ASSERT_THAT(first.read_http(), HasSubstr("HTTP/1.1 200"));
   EXPECT_THAT(get("/api/models"), HasSubstr("too many connections"));
   EXPECT_THAT(get("/healthz"), HasSubstr("HTTP/1.1 200"));
-  const client::ProgramOutcome refused = client::run_program(SURFCAST_CLIENT " ping " + url_ + " 2>&1");
+  const client::ProgramOutcome refused = client::run_program(path_of("surfcast") + " ping " + url_ + " 2>&1");
   EXPECT_EQ(refused.code, 1);
   EXPECT_THAT(refused.output, HasSubstr("the server is busy: too many connections"));
 }

@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "client/run_program.h"
 #include "net/raw_socket.h"
+#include "support/path_of.h"
 
 namespace surfcast::cmd {
 
@@ -54,9 +55,10 @@ class ServeTest : public ::testing::Test {
   void serve(const std::string& arguments, const std::string& log) {
     const std::string ready = (folder_ / "ready").string();
     std::filesystem::remove(ready);  // of a server before this one
-    server_ = client::start_program({"/bin/sh", "-c",
-                                     "exec " SURFCAST_SERVER " serve --listen 127.0.0.1:0 --host here --cache " +
-                                         cache() + " " + arguments + " > " + ready + " 2> " + log});
+    server_ =
+        client::start_program({"/bin/sh", "-c",
+                               "exec " + path_of("surfcastd") + " serve --listen 127.0.0.1:0 --host here --cache " +
+                                   cache() + " " + arguments + " > " + ready + " 2> " + log});
     for (int i = 0; i < 3000 && content(ready).find('\n') == std::string::npos; ++i) ::usleep(10'000);
     const std::string line = content(ready);
     const size_t url = line.find("http://");
@@ -66,7 +68,7 @@ class ServeTest : public ::testing::Test {
   /// Draws a small picture of a model, which waits for it.
   /// The limit is that of the whole test: a machine under load draws in software for minutes.
   [[nodiscard]] client::ProgramOutcome draw(const std::string& model) const {
-    return client::run_program(SURFCAST_CLIENT " render " + url_ + "/" + model +
+    return client::run_program(path_of("surfcast") + " render " + url_ + "/" + model +
                                " --timeout 290 --resolution 64,48 --output " + file("drawn.png") + " 2>&1");
   }
   [[nodiscard]] ::testing::AssertionResult draws(const std::string& model) const {
@@ -79,7 +81,7 @@ class ServeTest : public ::testing::Test {
     std::string list;
     for (int i = 0; i < 3000 && list.find(text) == std::string::npos; ++i) {
       if (i > 0) ::usleep(20'000);
-      list = client::run_program(SURFCAST_CLIENT " models --json " + url_).output;
+      list = client::run_program(path_of("surfcast") + " models --json " + url_).output;
     }
     return list;
   }

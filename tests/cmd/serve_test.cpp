@@ -10,6 +10,7 @@
 
 #include "cmd/serve_fixture.h"
 #include "scan/tile_files.h"
+#include "support/path_of.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -25,11 +26,12 @@ TEST_F(ServeTest, ScansInAFolderOfModelsAreNamedAsNotServed) {
 
 TEST_F(ServeTest, AScanIsBuiltServedDrawnAndTheServerEndsWhenTold) {
   serve(scan_.string());
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
-  EXPECT_EQ(client::run_program(SURFCAST_SERVER " healthcheck --url " + url_).code, 0);
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "square\n");
+  EXPECT_EQ(client::run_program(path_of("surfcastd") + " healthcheck --url " + url_).code, 0);
   const std::string flags = " --resolution 64,48 --output ";
-  ASSERT_EQ(client::run_program(SURFCAST_CLIENT " render " + url_ + "/square" + flags + file("served.png")).code, 0);
-  ASSERT_EQ(client::run_program(SURFCAST_SERVER " render --cache " + cache() + " " + scan_.string() + flags +
+  ASSERT_EQ(client::run_program(path_of("surfcast") + " render " + url_ + "/square" + flags + file("served.png")).code,
+            0);
+  ASSERT_EQ(client::run_program(path_of("surfcastd") + " render --cache " + cache() + " " + scan_.string() + flags +
                                 file("drawn.png") + " --stats " + file("drawn.json") + " 2>&1")
                 .code,
             0);
@@ -38,7 +40,7 @@ TEST_F(ServeTest, AScanIsBuiltServedDrawnAndTheServerEndsWhenTold) {
   EXPECT_NE(content(file("drawn.json")).find("\"gl_renderer\""), std::string::npos);
   EXPECT_NE(content(file("log")).find("OpenGL"), std::string::npos);
   EXPECT_EQ(end(SIGTERM), 0);
-  EXPECT_EQ(client::run_program(SURFCAST_SERVER " healthcheck --url " + url_ + " 2>&1").code, 1);
+  EXPECT_EQ(client::run_program(path_of("surfcastd") + " healthcheck --url " + url_ + " 2>&1").code, 1);
 }
 
 TEST_F(ServeTest, AFolderThatIsAScanIsServedUnderItsName) {
@@ -51,13 +53,13 @@ TEST_F(ServeTest, AFolderThatIsAScanIsServedUnderItsName) {
   write("a.pnts", testing::pnts(R"({"POINTS_LENGTH": 400, "POSITION": {"byteOffset": 0}})", points.text()));
   write("tileset.json", R"({"asset": {"version": "1.0"}, "root": {"content": {"uri": "a.pnts"}}})");
   serve(file("church"));
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "church\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "church\n");
   ASSERT_TRUE(draws("church"));
   const std::string drawn = content(file("drawn.png"));
   EXPECT_FALSE(drawn.empty());
   EXPECT_EQ(end(SIGTERM), 0);
   serve(file("church/tileset.json"));
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "church\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "church\n");
   ASSERT_TRUE(draws("church"));
   EXPECT_TRUE(content(file("drawn.png")) == drawn);
 }
@@ -65,10 +67,11 @@ TEST_F(ServeTest, AFolderThatIsAScanIsServedUnderItsName) {
 TEST_F(ServeTest, AFolderOfModelsIsNoScanWhateverElseItHolds) {
   const std::string model = file("models/square.surf");
   fs::create_directories(folder_ / "models");
-  ASSERT_EQ(client::run_program(SURFCAST_SERVER " build " + scan_.string() + " --output " + model + " 2>&1").code, 0);
+  ASSERT_EQ(
+      client::run_program(path_of("surfcastd") + " build " + scan_.string() + " --output " + model + " 2>&1").code, 0);
   ASSERT_TRUE(write_file_atomically(folder_ / "models/tileset.json", R"({"asset": {}, "root": {}})"));
   serve(file("models"));
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "square\n");
 }
 
 TEST_F(ServeTest, AReaderOfTheLogThatGoesAwayDoesNotEndTheServer) {
@@ -123,7 +126,7 @@ TEST_F(ServeTest, ARenderWorkerThatIsKilledIsReplaced) {
 
 /// One software device stands for two GPUs.
 TEST_F(ServeTest, TwoGpusHaveAWorkerEachAndDrawAllModels) {
-  const std::string devices = client::run_program(SURFCAST_SERVER " gpus").output;
+  const std::string devices = client::run_program(path_of("surfcastd") + " gpus").output;
   if (devices.starts_with("EGL lists no devices")) GTEST_SKIP() << devices;
   ASSERT_TRUE(devices.starts_with("0 software: ") || devices.starts_with("0 hardware: ")) << devices;
   std::string scans;
@@ -142,7 +145,7 @@ TEST_F(ServeTest, TwoGpusHaveAWorkerEachAndDrawAllModels) {
   EXPECT_NE(metrics.find("\nsurfcast_host_memory_budget_bytes 67108864\n"), std::string::npos) << "of both";
   ASSERT_TRUE(draws("a"));
   const std::string drawn = content(file("drawn.png"));
-  const std::string render = "SURFCAST_GPU=0,0 " SURFCAST_SERVER " render --cache " + cache() + " ";
+  const std::string render = "SURFCAST_GPU=0,0 " + path_of("surfcastd") + " render --cache " + cache() + " ";
   EXPECT_EQ(client::run_program(render + scan_.string() + " --resolution 8,8 --output " + file("alone.png")).code, 0)
       << "with the variable of the server";
   for (const pid_t worker : workers()) ::kill(worker, SIGKILL);
@@ -252,13 +255,13 @@ TEST_F(ServeTest, WorkersEndWithTheirServer) {
 TEST_F(ServeTest, ChannelsAreTheSameByEveryWay) {
   serve(scan_.string());
   const std::string flags = " --resolution 64,48 --channels depth,normal,position,coverage,surfel --output ";
-  const std::string program = SURFCAST_CLIENT " render ";
+  const std::string program = path_of("surfcast") + " render ";
   EXPECT_EQ(client::run_program(program + url_ + "/square" + flags + file("tcp.exr")).code, 0);
   EXPECT_EQ(client::run_program(program + "ws://" + url_ + "/square" + flags + file("ws.exr")).code, 0);
   const std::string fetched =
       get("/api/models/square/image?resolution=64,48&format=exr&"
           "channels=depth,normal,position,coverage,surfel");
-  EXPECT_EQ(client::run_program(SURFCAST_SERVER " render --cache " + cache() + " " + scan_.string() + flags +
+  EXPECT_EQ(client::run_program(path_of("surfcastd") + " render --cache " + cache() + " " + scan_.string() + flags +
                                 file("drawn.exr") + " 2>&1")
                 .code,
             0);
@@ -271,7 +274,7 @@ TEST_F(ServeTest, ChannelsAreTheSameByEveryWay) {
 TEST_F(ServeTest, AProfileIsTheSameByEveryWay) {
   serve(scan_.string());
   const std::string flags = " --line '2,3.2,0;12.5,3.2,9' --width 1 --output ";
-  const std::string program = SURFCAST_CLIENT " profile ";
+  const std::string program = path_of("surfcast") + " profile ";
   for (const std::string format : {"csv", "las"}) {
     EXPECT_EQ(client::run_program(program + url_ + "/square" + flags + file("tcp." + format)).code, 0);
     EXPECT_EQ(client::run_program(program + "ws://" + url_ + "/square" + flags + file("ws." + format)).code, 0);
@@ -299,7 +302,7 @@ TEST_F(ServeTest, AProfileIsTheSameByEveryWay) {
 
 TEST_F(ServeTest, ARegionIsTheSameByEveryWay) {
   serve("--max-region-points 300 " + scan_.string());
-  const std::string program = SURFCAST_CLIENT " export ";
+  const std::string program = path_of("surfcast") + " export ";
   const std::string flags = " --box '2,3,-1,12.5,7,1' --output ";
   for (const std::string format : {"las", "laz", "ply", "csv", "npy"}) {
     const client::ProgramOutcome saved =
@@ -333,9 +336,10 @@ TEST_F(ServeTest, SeveralModelsAreShownAsOne) {
     text << "x,y,z,red,green,blue\n";
     for (int i = 0; i < 400; ++i) text << east + i % 20 << ',' << i / 20 << ",0,200,100,50\n";
     ASSERT_TRUE(write_file_atomically(folder_ / (name + ".csv"), text.str()));
-    ASSERT_EQ(
-        client::run_program(SURFCAST_SERVER " build " + file(name + ".csv") + " --output " + file(name + ".surf")).code,
-        0);
+    ASSERT_EQ(client::run_program(path_of("surfcastd") + " build " + file(name + ".csv") + " --output " +
+                                  file(name + ".surf"))
+                  .code,
+              0);
   };
   build("west", 0);
   build("east", 20);
@@ -348,11 +352,13 @@ TEST_F(ServeTest, SeveralModelsAreShownAsOne) {
       " --camera-position 20,10,60 --camera-focal-point 20,10,0 --camera-view-up 0,1,0 --resolution 96,64 --output ";
   const std::string over_http = get("/api/models/west+east/image?" + camera);
   ASSERT_EQ(over_http.substr(1, 3), "PNG") << over_http;
-  ASSERT_EQ(client::run_program(SURFCAST_CLIENT " render " + url_ + "/west+east" + flags + file("framed.png")).code, 0);
+  ASSERT_EQ(
+      client::run_program(path_of("surfcast") + " render " + url_ + "/west+east" + flags + file("framed.png")).code, 0);
   EXPECT_EQ(content(folder_ / "framed.png"), over_http);
   for (const std::string& files :
        {file("west.surf") + "+" + file("east.surf"), file("west.surf") + " " + file("east.surf")}) {
-    const auto local = client::run_program(SURFCAST_SERVER " render " + files + flags + file("local.png") + " 2>&1");
+    const auto local =
+        client::run_program(path_of("surfcastd") + " render " + files + flags + file("local.png") + " 2>&1");
     ASSERT_EQ(local.code, 0) << local.output;
     EXPECT_EQ(content(folder_ / "local.png"), over_http);
   }
@@ -372,7 +378,7 @@ TEST_F(ServeTest, SeveralModelsAreShownAsOne) {
   const std::string hidden = get("/api/models/west+east/pick?pixel=60,32&hide_models=east&" + camera);
   EXPECT_EQ(nlohmann::json::parse(hidden)["hit"], false);
   EXPECT_EQ(nlohmann::json::parse(get("/api/models/west+east/points?count=1"))["points"], 800);
-  const auto pick = client::run_program(SURFCAST_SERVER " pick " + file("west.surf") + " " + file("east.surf") +
+  const auto pick = client::run_program(path_of("surfcastd") + " pick " + file("west.surf") + " " + file("east.surf") +
                                         " --pixel 60,32 --json --camera-position 20,10,60 --camera-focal-point "
                                         "20,10,0 --camera-view-up 0,1,0 --resolution 96,64");
   ASSERT_EQ(pick.code, 0) << pick.output;
@@ -380,14 +386,15 @@ TEST_F(ServeTest, SeveralModelsAreShownAsOne) {
 
   // A model of exactly that name, models that are not there, and one twice.
   EXPECT_EQ(nlohmann::json::parse(get("/api/models/a+b"))["surfels"], 400);
-  ASSERT_EQ(client::run_program(SURFCAST_SERVER " render " + file("a+b.surf") + flags + file("plus.png")).code, 0);
+  ASSERT_EQ(client::run_program(path_of("surfcastd") + " render " + file("a+b.surf") + flags + file("plus.png")).code,
+            0);
   EXPECT_NE(get("/api/models/west+south").find("there is no model 'south'"), std::string::npos);
   EXPECT_NE(get("/api/models/west+west").find("west: is named twice"), std::string::npos);
 }
 
 TEST_F(ServeTest, ARegionThatFailsLeavesNoFile) {
   serve("--max-region-points 300 " + scan_.string());
-  const std::string program = SURFCAST_CLIENT " export " + url_ + "/square --output " + file("part.csv");
+  const std::string program = path_of("surfcast") + " export " + url_ + "/square --output " + file("part.csv");
   const client::ProgramOutcome large = client::run_program(program + " 2>&1");
   EXPECT_EQ(large.code, 1);
   EXPECT_NE(large.output.find("the region has more than 300 points"), std::string::npos) << large.output;
@@ -408,7 +415,7 @@ TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
   const fs::path copy = folder_ / "renamed.ply";
   fs::copy_file(scan_, copy);
   serve(copy.string());
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "renamed\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "renamed\n");
   EXPECT_EQ(content(file("log")).find("building"), std::string::npos);
   EXPECT_EQ(cached().size(), 1U);
 }
@@ -431,8 +438,8 @@ TEST_F(ServeTest, AVolumeWithItsSamplesInAnotherFileIsBuiltAndDrawn) {
 TEST_F(ServeTest, WhatCannotBeServedIsAFailureThatNamesIt) {
   ASSERT_TRUE(write_file_atomically(folder_ / "broken.ply", "ply\nformat ascii 1.0\n"));
   for (const std::string name : {"absent.surf", "absent.ply", "broken.ply"}) {
-    const client::ProgramOutcome outcome = client::run_program(SURFCAST_SERVER " serve --listen 127.0.0.1:0 --cache " +
-                                                               cache() + " " + file(name) + " 2>&1");
+    const client::ProgramOutcome outcome = client::run_program(
+        path_of("surfcastd") + " serve --listen 127.0.0.1:0 --cache " + cache() + " " + file(name) + " 2>&1");
     EXPECT_EQ(outcome.code, 1) << name;
     EXPECT_NE(outcome.output.find("surfcastd: "), std::string::npos);
     EXPECT_NE(outcome.output.find(name), std::string::npos) << outcome.output;
@@ -445,7 +452,7 @@ TEST_F(ServeTest, AScanThatCannotBeBuiltIsListedWithItsReasonAndOthersAreServed)
   EXPECT_TRUE(draws("square"));
   const std::string list = list_until("\"state\": \"failed\"");
   EXPECT_NE(list.find("broken.ply: truncated"), std::string::npos) << list;
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "square\n");
   EXPECT_NE(draw("broken").code, 0);
   EXPECT_EQ(end(SIGTERM), 0);
 }
@@ -476,7 +483,7 @@ class ServeLargeScanTest : public ServeTest {
 
 TEST_F(ServeLargeScanTest, ThePortIsOpenAtOnceAndAPreviewIsServedWhileTheModelIsBuilt) {
   serve("--build-threads 1 --preview-points 20000 " + large_.string());
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "large\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "large\n");
   const pid_t build = building();
   ASSERT_GT(build, 0);
   ::kill(build, SIGSTOP);  // or it might be done before the preview is drawn
@@ -526,7 +533,7 @@ TEST_F(ServeUploadsTest, AScanThatIsSentIsBuiltAndServedByLaterServersToo) {
   ASSERT_TRUE(write_file_atomically(file("uploads/half.ply.tmp7-1"), "left by a server that was killed"));
   EXPECT_EQ(end(SIGTERM), 0);
   serve_uploads();
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "Sent\nsquare\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "Sent\nsquare\n");
   EXPECT_TRUE(draws("Sent"));
   EXPECT_EQ(std::distance(fs::directory_iterator(uploads()), fs::directory_iterator()), 1);
 }
@@ -538,7 +545,7 @@ TEST_F(ServeUploadsTest, WhatIsNoScanOrHasANameThatIsTakenIsRefused) {
   EXPECT_NE(torn.find("\"torn.ply: truncated"), std::string::npos) << torn;
   EXPECT_NE(put("square.ply", square_of_points()).find("that name already"), std::string::npos);
   EXPECT_TRUE(fs::is_empty(uploads()));
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "square\n");
 }
 
 TEST_F(ServeUploadsTest, AScanThatCannotBeBuiltIsListedWithItsReason) {
@@ -550,7 +557,7 @@ TEST_F(ServeUploadsTest, AScanThatCannotBeBuiltIsListedWithItsReason) {
 TEST_F(ServeTest, WrongCommandLinesEndWithTwo) {
   for (const std::string arguments : {"serve --listen nowhere", "serve --gpu -1", "serve --gpu 0,", "serve --gpu some",
                                       "render a.surf", "render a.surf --output a.gif", "healthcheck --url x"}) {
-    EXPECT_EQ(client::run_program(SURFCAST_SERVER " " + arguments + " 2>&1").code, 2) << arguments;
+    EXPECT_EQ(client::run_program(path_of("surfcastd") + " " + arguments + " 2>&1").code, 2) << arguments;
   }
 }
 

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "client/run_program.h"
+#include "support/path_of.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -29,7 +30,7 @@ struct Flag {
 
 /// The flags of a command, as its help lists them.
 std::vector<Flag> flags_of(const std::string& command) {
-  const client::ProgramOutcome help = client::run_program(SURFCASTD " " + command + " --help");
+  const client::ProgramOutcome help = client::run_program(path_of("surfcastd") + " " + command + " --help");
   EXPECT_EQ(help.code, 0);
   const std::regex form("\n  (?:-h,)?--([a-z0-9-]+)(?:,--[a-z-]+)?(?: ([A-Z]+))?(?:[^\n]*\\(Env:([A-Z0-9_]+)\\))?");
   std::vector<Flag> flags;
@@ -51,7 +52,7 @@ bool is_setting(const Flag& flag) {
 
 /// Names of flags in the first column of the tables of docs/settings.md.
 std::set<std::string> documented_flags() {
-  std::ifstream stream(SURFCAST_SETTINGS_TABLE);
+  std::ifstream stream(path_of("docs/settings.md"));
   std::set<std::string> flags;
   for (std::string line; std::getline(stream, line);) {
     if (!line.starts_with("| `--")) continue;
@@ -96,7 +97,8 @@ TEST(SettingsTableTest, RenderAndPickShareSettingsWithTheServer) {
 TEST(SettingsTableTest, AWrongValueIsOneLineThatNamesTheFlag) {
   for (const Flag& flag : flags_of("serve")) {
     if (!is_setting(flag)) continue;
-    const client::ProgramOutcome outcome = client::run_program(SURFCASTD " serve --" + flag.name + " wrong 2>&1");
+    const client::ProgramOutcome outcome =
+        client::run_program(path_of("surfcastd") + " serve --" + flag.name + " wrong 2>&1");
     EXPECT_EQ(outcome.code, 2) << flag.name;
     EXPECT_THAT(outcome.output, StartsWith("surfcastd: --" + flag.name + ": "));
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
@@ -106,7 +108,8 @@ TEST(SettingsTableTest, AWrongValueIsOneLineThatNamesTheFlag) {
 /// One setting of each type stands for all: what names the variable is the same for every flag.
 TEST(SettingsTableTest, AWrongValueOfAVariableIsOneLineThatNamesTheVariable) {
   for (const std::string variable : {"SURFCAST_GPU_MEMORY", "SURFCAST_MAX_PIXELS", "SURFCAST_IDLE_TIMEOUT"}) {
-    const client::ProgramOutcome outcome = client::run_program(variable + "=wrong " SURFCASTD " serve 2>&1");
+    const client::ProgramOutcome outcome =
+        client::run_program(variable + "=wrong " + path_of("surfcastd") + " serve 2>&1");
     EXPECT_EQ(outcome.code, 2) << variable;
     EXPECT_THAT(outcome.output, StartsWith("surfcastd: " + variable + ": "));
     EXPECT_THAT(outcome.output, Not(HasSubstr("--"))) << "nobody gave a flag";
@@ -115,11 +118,12 @@ TEST(SettingsTableTest, AWrongValueOfAVariableIsOneLineThatNamesTheVariable) {
 }
 
 TEST(SettingsTableTest, TheCommandLineWinsAndIsThenWhatIsNamed) {
-  const std::string wrong_flag = "SURFCAST_GPU_MEMORY=1G " SURFCASTD " serve --gpu-memory=wrong 2>&1";
+  const std::string wrong_flag = "SURFCAST_GPU_MEMORY=1G " + path_of("surfcastd") + " serve --gpu-memory=wrong 2>&1";
   EXPECT_THAT(client::run_program(wrong_flag).output, StartsWith("surfcastd: --gpu-memory: "));
-  const std::string other = "SURFCAST_GPU_MEMORY=wrong " SURFCASTD " serve --gpu-memory 1G --encoders 0 2>&1";
+  const std::string other =
+      "SURFCAST_GPU_MEMORY=wrong " + path_of("surfcastd") + " serve --gpu-memory 1G --encoders 0 2>&1";
   EXPECT_THAT(client::run_program(other).output, StartsWith("surfcastd: --encoders: "));
-  const std::string typed = "SURFCAST_GPU=first " SURFCASTD " serve 2>&1";
+  const std::string typed = "SURFCAST_GPU=first " + path_of("surfcastd") + " serve 2>&1";
   EXPECT_THAT(client::run_program(typed).output, HasSubstr("SURFCAST_GPU"));
   EXPECT_EQ(client::run_program(typed).code, 2);
 }

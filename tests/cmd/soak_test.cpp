@@ -1,4 +1,5 @@
 #include "cmd/serve_fixture.h"
+#include "support/path_of.h"
 #include "support/sample_size.h"
 
 namespace surfcast::cmd {
@@ -9,7 +10,7 @@ namespace {
 TEST_F(ServeTest, ComingAndGoingLeavesNothingBehind) {
   serve(scan_.string());
   const int seconds = testing::sample_size("SURFCAST_SOAK_SECONDS", 15);
-  const std::string command = SURFCAST_SOAK " " + std::to_string(server_) + " " + url_ + "/square " +
+  const std::string command = path_of("soak") + " " + std::to_string(server_) + " " + url_ + "/square " +
                               std::to_string(seconds) + " 3 " + (seconds < 60 ? "8" : "5");
   const client::ProgramOutcome outcome = client::run_program(command);
   EXPECT_EQ(outcome.code, 0) << outcome.output;

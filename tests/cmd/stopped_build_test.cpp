@@ -18,6 +18,7 @@
 
 #include "client/run_program.h"
 #include "cmd/wavy_scan.h"
+#include "support/path_of.h"
 #include "support/sample_size.h"
 
 namespace surfcast::cmd {
@@ -65,7 +66,7 @@ std::set<long> moments_of(long count) {
 
 /// Runs a command with these variables in its environment; the exit code, or 128 and the signal.
 int run_counted(std::vector<std::string> variables, std::vector<std::string> command) {
-  std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=" STOP_AT_CALL};
+  std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=" + path_of("stop_at_call")};
   std::ranges::move(variables, std::back_inserter(line));
   std::ranges::move(command, std::back_inserter(line));
   return client::wait_for_program(client::start_program(line));
@@ -89,22 +90,22 @@ struct Builder {
 const Builder kBuilders[] = {
     {"AsAWhole", "scan.ply", testing::write_waves,
      [](const std::string& scan, const std::string& target) {
-       return std::vector<std::string>{SURFCASTD, "build", scan, "--output", target};
+       return std::vector<std::string>{path_of("surfcastd"), "build", scan, "--output", target};
      },
      10},
     {"InManyParts", "scan.ply", testing::write_waves,
      [](const std::string& scan, const std::string& target) {
-       return std::vector<std::string>{BUILD_IN_PARTS, scan, target, "1200"};
+       return std::vector<std::string>{path_of("build_in_parts"), scan, target, "1200"};
      },
      60},
     {"AVolume", "grid.nrrd", write_grid,
      [](const std::string& grid, const std::string& target) {
-       return std::vector<std::string>{SURFCASTD, "build", grid, "--output", target};
+       return std::vector<std::string>{path_of("surfcastd"), "build", grid, "--output", target};
      },
      10},
     {"Gaussians", "gaussians.ply", write_gaussians,
      [](const std::string& gaussians, const std::string& target) {
-       return std::vector<std::string>{SURFCASTD, "build", gaussians, "--output", target};
+       return std::vector<std::string>{path_of("surfcastd"), "build", gaussians, "--output", target};
      },
      10},
 };
@@ -218,13 +219,13 @@ class StoppedAppendTest : public ::testing::Test {
     std::signal(SIGINT, SIG_DFL);  // may be ignored, which programs inherit
     testing::write_waves(folder_ / "west.ply", 150);
     testing::write_waves_from(folder_ / "east.ply", 100, 150);
-    ASSERT_EQ(run_counted({}, {SURFCASTD, "build", folder_ / "west.ply", "--output", model_}), 0);
+    ASSERT_EQ(run_counted({}, {path_of("surfcastd"), "build", folder_ / "west.ply", "--output", model_}), 0);
     before_ = testing::bytes_in(model_);
   }
   void TearDown() override { fs::remove_all(folder_); }
 
   [[nodiscard]] int append(std::vector<std::string> variables) const {
-    return run_counted(std::move(variables), {SURFCASTD, "build", folder_ / "east.ply", "--into", model_});
+    return run_counted(std::move(variables), {path_of("surfcastd"), "build", folder_ / "east.ply", "--into", model_});
   }
   [[nodiscard]] size_t files() const {
     return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));

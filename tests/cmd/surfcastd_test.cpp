@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "model/model_file.h"
+#include "support/path_of.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -57,7 +58,7 @@ class SurfcastdTest : public ::testing::Test {
 
   /// `before` is a command of the shell for the same process.
   [[nodiscard]] Answer run(const std::string& arguments, const std::string& before = ":") const {
-    const std::string program = "'" SURFCASTD "' " + arguments + " >out 2>err";
+    const std::string program = "'" + path_of("surfcastd") + "' " + arguments + " >out 2>err";
     const std::string command = "cd '" + folder_.string() + "' && " + before + " && " + program;
     Answer answer;
     const int status = std::system(command.c_str());
@@ -528,7 +529,7 @@ TEST_F(SurfcastdTest, ModelsOfSeveralSystemsAreStatedInTheFirst) {
 }
 
 TEST_F(SurfcastdTest, AKindOfBlocksThatItDoesNotKnowIsCountedAndNamed) {
-  fs::copy_file(fs::path(SURFCAST_TEST_DATA) / "square-and-balls-v3.surf", folder_ / "model.surf");
+  fs::copy_file(fs::path(path_of("tests/data")) / "square-and-balls-v3.surf", folder_ / "model.surf");
   const nlohmann::json model = nlohmann::json::parse(run("inspect model.surf --json").out);
   EXPECT_EQ(model["kinds"], nlohmann::json::parse(R"([{"kind": "surfel", "blocks": 1, "count": 144},
                                                       {"kind": "ball", "blocks": 3, "count": 4}])"));

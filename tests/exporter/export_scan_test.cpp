@@ -17,6 +17,7 @@
 #include "scan/las_file.h"
 #include "scan/las_records.h"
 #include "scan/whole_scan.h"
+#include "support/path_of.h"
 
 namespace surfcast::exporter {
 namespace {
@@ -146,7 +147,7 @@ TEST_P(ExportFormatTest, TheHeaderStatesCountsReturnsAndBoundsOfWhatIsThere) {
 
 TEST_F(ExportScanTest, FilesOfOtherCodersAreCopiedToTheLastByte) {
   for (const char* name : {"indoor.laz", "lion.laz", "random-rgb-nir.laz"}) {
-    const fs::path source = fs::path(SURFCAST_TEST_DATA) / "laz" / name;
+    const fs::path source = fs::path(path_of("tests/data")) / "laz" / name;
     ASSERT_TRUE(export_scan(source, place("plain.las"), {})) << name;
     ASSERT_TRUE(export_scan(place("plain.las"), place("again.laz"), {})) << name;
     EXPECT_EQ(read_records(place("plain.las")), read_records(source)) << name;

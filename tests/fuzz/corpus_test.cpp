@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "fuzz/targets.h"
+#include "support/path_of.h"
 
 namespace surfcast::fuzz {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 class FuzzCorpus : public ::testing::TestWithParam<Target> {};
 
 TEST_P(FuzzCorpus, EveryInputIsReadOrRefused) {
-  const std::filesystem::path folder = std::filesystem::path(SURFCAST_FUZZ_CORPUS) / GetParam().name;
+  const std::filesystem::path folder = std::filesystem::path(path_of("tests/fuzz/corpus")) / GetParam().name;
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     SCOPED_TRACE(entry.path().string());

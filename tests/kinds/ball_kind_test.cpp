@@ -6,6 +6,7 @@
 #include "kinds/file_blocks.h"
 #include "model/model_writer.h"
 #include "model/test_folder.h"
+#include "support/path_of.h"
 
 namespace surfcast::kinds {
 namespace {
@@ -33,7 +34,7 @@ std::vector<PickedSurfel> straight_ahead(const SourceBlock& block, const glm::dv
 /// Every later version must read files of earlier ones correctly. The file contains the scene with a square of 12 x 12
 /// surfels, written when version 3 of the format was new.
 TEST(KindsFixture, OfVersionThreeIsStillRead) {
-  const auto model = open(std::string(SURFCAST_TEST_DATA) + "/square-and-balls-v3.surf");
+  const auto model = open(path_of("tests/data") + "/square-and-balls-v3.surf");
   const BallScene scene;
   ASSERT_EQ(model->info().kinds.size(), 2U);
   EXPECT_EQ(model->info().surfels, 144U);

@@ -12,6 +12,7 @@
 #include "lab/plots.h"
 #include "lab/scenes.h"
 #include "lab/volume_report.h"
+#include "support/path_of.h"
 
 namespace surfcast::lab {
 namespace {
@@ -64,14 +65,14 @@ TEST(SectionTest, MarkersThatAreMissingDoubledOrSwappedAreRefused) {
 
 TEST(SectionTest, ThePageOfTheDocumentationHasItsMarkers) {
   std::ostringstream page;
-  page << std::ifstream(std::filesystem::path(SURFCAST_DOCS) / kResultsPage).rdbuf();
+  page << std::ifstream(std::filesystem::path(path_of("docs")) / kResultsPage).rdbuf();
   EXPECT_TRUE(with_section(page.str(), kResultsBegin, kResultsEnd, markdown_of(example())));
 }
 
 TEST(SectionTest, ThePageHasTheMarkersOfVolumesAndTheirResultsAreLinesOf120Columns) {
   const VolumeResults results{example(), example(), {{"chest_ct-bone", "256 x 256 x 133", 1024, 3000, 2900, 55}}};
   std::ostringstream page;
-  page << std::ifstream(std::filesystem::path(SURFCAST_DOCS) / kResultsPage).rdbuf();
+  page << std::ifstream(std::filesystem::path(path_of("docs")) / kResultsPage).rdbuf();
   EXPECT_TRUE(with_section(page.str(), kVolumesBegin, kVolumesEnd, markdown_of(results)));
   std::istringstream text(markdown_of(results));
   for (std::string line; std::getline(text, line);) {

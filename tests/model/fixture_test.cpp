@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "model/round_trip.h"
+#include "support/path_of.h"
 
 namespace surfcast::model {
 namespace {
@@ -27,7 +28,7 @@ surfel::SurfelCloud fixture_cloud() {
 
 /// Every later version must read files of earlier ones correctly.
 TEST(ModelFixture, OfVersionTwoIsStillRead) {
-  const Result<ModelFile> model = ModelFile::open(std::string(SURFCAST_TEST_DATA) + "/sphere-and-grid-v2.surf");
+  const Result<ModelFile> model = ModelFile::open(path_of("tests/data") + "/sphere-and-grid-v2.surf");
   ASSERT_TRUE(model) << model.error().message;
   const surfel::SurfelCloud cloud = fixture_cloud();
   EXPECT_EQ(model->info().source_names, (std::vector<std::string>{"sphere.ply", "grid.las"}));
@@ -50,7 +51,7 @@ TEST(ModelFixture, OfVersionTwoIsStillRead) {
 }
 
 TEST(ModelFixture, HasCoarseBlocksThatDecode) {
-  const Result<ModelFile> model = ModelFile::open(std::string(SURFCAST_TEST_DATA) + "/sphere-and-grid-v2.surf");
+  const Result<ModelFile> model = ModelFile::open(path_of("tests/data") + "/sphere-and-grid-v2.surf");
   ASSERT_TRUE(model) << model.error().message;
   size_t coarse = 0;
   for (size_t b = 0; b < model->blocks().size(); ++b) {

@@ -10,6 +10,7 @@
 #include "net/metrics.h"
 #include "net/net_fixture.h"
 #include "net/trace.h"
+#include "support/path_of.h"
 
 namespace surfcast::net {
 namespace {
@@ -107,7 +108,7 @@ TEST(DashboardTest, ShowsFiguresThatThereAre) {
   metrics.tls_expires = 1;
   metrics.stage_seconds["draw"] = 1;
   const std::set<std::string> there = names_in(metrics_text(metrics, {}, Exposition::Format::kPrometheus));
-  std::ifstream stream(SURFCAST_DASHBOARD);
+  std::ifstream stream(path_of("deploy/grafana/surfcast.json"));
   std::ostringstream dashboard;
   dashboard << stream.rdbuf();
   const std::set<std::string> shown = names_in(dashboard.str());

@@ -17,6 +17,7 @@
 #include "numerics/sample_pictures.h"
 #include "render/renderer.h"
 #include "support/clouds.h"
+#include "support/path_of.h"
 
 namespace surfcast::testing {
 namespace {
@@ -152,8 +153,8 @@ TEST_F(DeterminismGLTest, OtherProcessesAndNumbersOfThreadsDrawTheSame) {
   for (const SampleMedium& sample : sample_media()) expect(sample.name, draw(model_of(sample), sample.request));
   renderer_.reset();
   for (const char* threads : {"0", "1", "3"}) {  // only llvmpipe reads this variable
-    const client::ProgramOutcome other = client::run_program("LP_NUM_THREADS=" + std::string(threads) +
-                                                             " '" SURFCAST_PRINT_HASHES "' '" + folder_.string() + "'");
+    const client::ProgramOutcome other = client::run_program("LP_NUM_THREADS=" + std::string(threads) + " '" +
+                                                             path_of("print_hashes") + "' '" + folder_.string() + "'");
     EXPECT_EQ(other.code, 0);
     EXPECT_EQ(other.output, expected) << threads << " threads";
   }

@@ -26,6 +26,7 @@
 #include "model/write_model.h"
 #include "numerics/sample_pictures.h"
 #include "render/renderer.h"
+#include "support/path_of.h"
 
 namespace surfcast::testing {
 namespace {
@@ -123,7 +124,7 @@ class GoldenGLTest : public ::testing::TestWithParam<bool> {
 
   std::unique_ptr<render::Renderer> renderer_;
   fs::path models_;
-  const fs::path golden_ = fs::path(SURFCAST_TEST_DATA) / "golden";
+  const fs::path golden_ = fs::path(path_of("tests/data")) / "golden";
   const fs::path drawn_ = fs::current_path() / (GetParam() ? "golden_by_gpu_kernels" : "golden");
 };
 

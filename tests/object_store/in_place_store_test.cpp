@@ -12,6 +12,7 @@
 #include "model/test_folder.h"
 #include "object_store/hills.h"
 #include "object_store/range_server.h"
+#include "support/path_of.h"
 
 namespace surfcast::object_store {
 namespace {
@@ -46,8 +47,8 @@ class InPlaceStoreTest : public ::testing::Test {
   void write_scan(const std::string& name, int turn) const {
     std::ofstream(file(name + ".ply")) << testing::hills(250, turn);
     for (const char* target : {".copc.laz", "/ept.json"}) {
-      ASSERT_EQ(client::run_program(SURFCASTD " export " + file(name + ".ply") + " --chunk 2000 --output " +
-                                    file(name + target) + " 2>&1")
+      ASSERT_EQ(client::run_program(path_of("surfcastd") + " export " + file(name + ".ply") +
+                                    " --chunk 2000 --output " + file(name + target) + " 2>&1")
                     .code,
                 0);
     }
@@ -72,8 +73,9 @@ class InPlaceStoreTest : public ::testing::Test {
 
   [[nodiscard]] client::ProgramOutcome draw(const std::string& scan, const std::string& flags = {}) const {
     fs::remove(picture());
-    return client::run_program(SURFCASTD " render " + scan + " --in-place --resolution 160,120 --output " + picture() +
-                               " --store-timeout 3 --store-stall-timeout 0.3 " + flags + " 2>&1 >/dev/null");
+    return client::run_program(path_of("surfcastd") + " render " + scan + " --in-place --resolution 160,120 --output " +
+                               picture() + " --store-timeout 3 --store-stall-timeout 0.3 " + flags +
+                               " 2>&1 >/dev/null");
   }
   [[nodiscard]] std::string drawn(const std::string& scan, const std::string& flags = {}) const {
     const client::ProgramOutcome outcome = draw(scan, flags);
@@ -110,14 +112,14 @@ TEST_F(InPlaceStoreTest, BlocksOnDiskAreNotMadeAgainAndShowTheSame) {
 }
 
 TEST_F(InPlaceStoreTest, InspectPickAndExportTakeUrls) {
-  const client::ProgramOutcome inspected = client::run_program(SURFCASTD " inspect " + server_.url(kCopc));
+  const client::ProgramOutcome inspected = client::run_program(path_of("surfcastd") + " inspect " + server_.url(kCopc));
   EXPECT_THAT(inspected.output, HasSubstr("in place"));
   EXPECT_THAT(inspected.output, HasSubstr("surfels: 62500"));
-  const client::ProgramOutcome picked =
-      client::run_program(SURFCASTD " pick " + server_.url(kCopc) + " --resolution 160,120 --pixel 80,60 2>&1");
+  const client::ProgramOutcome picked = client::run_program(path_of("surfcastd") + " pick " + server_.url(kCopc) +
+                                                            " --resolution 160,120 --pixel 80,60 2>&1");
   EXPECT_EQ(picked.code, 0) << picked.output;
-  const client::ProgramOutcome exported =
-      client::run_program(SURFCASTD " export " + server_.url(kCopc) + " --output " + file("out.csv") + " 2>&1");
+  const client::ProgramOutcome exported = client::run_program(path_of("surfcastd") + " export " + server_.url(kCopc) +
+                                                              " --output " + file("out.csv") + " 2>&1");
   EXPECT_THAT(exported.output, HasSubstr("62500 points"));
 }
 

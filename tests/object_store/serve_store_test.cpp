@@ -3,6 +3,7 @@
 #include "cmd/serve_fixture.h"
 #include "object_store/hills.h"
 #include "object_store/range_server.h"
+#include "support/path_of.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -31,7 +32,7 @@ class ServeStoreTest : public ServeTest {
     const std::string scan = file(name + "_source.ply");
     const std::string model = file(name + ".surf");
     EXPECT_TRUE(write_file_atomically(scan, ply));
-    EXPECT_EQ(client::run_program(SURFCAST_SERVER " build " + scan + " --output " + model + " 2>&1").code, 0);
+    EXPECT_EQ(client::run_program(path_of("surfcastd") + " build " + scan + " --output " + model + " 2>&1").code, 0);
     return content(model);
   }
   /// The picture that the server draws.
@@ -53,7 +54,7 @@ class ServeStoreTest : public ServeTest {
 
 TEST_F(ServeStoreTest, AUrlIsServedLikeAFile) {
   serve(store_.url("/bucket/square.surf"));
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "square\n");
   const std::string from_store = drawn("square");
   end(SIGTERM);
   serve(file("square.surf"));
@@ -63,7 +64,7 @@ TEST_F(ServeStoreTest, AUrlIsServedLikeAFile) {
 TEST_F(ServeStoreTest, TheModelsOfABucketAreListedAndNewOnesAreSeen) {
   store_.put_page(kList, list_of({"square.surf", "notes.txt"}));
   serve(store_.url("/bucket/") + " --store-refresh 0.1");
-  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  EXPECT_EQ(client::run_program(path_of("surfcast") + " models " + url_).output, "square\n");
   EXPECT_FALSE(drawn("square").empty());
   store_.put("/bucket/another.surf", model_);
   store_.put_page(kList, list_of({"square.surf", "another.surf"}));
@@ -80,8 +81,8 @@ TEST_F(ServeStoreTest, AFileIsDrawnByAWorkerAndAtOnceWhileAStoreHangs) {
   std::vector<pid_t> waiting;
   for (int client = 0; client < 4; ++client) {
     waiting.push_back(
-        client::start_program({SURFCAST_CLIENT, "render", url_ + "/square", "--timeout", "290", "--resolution", "64,48",
-                               "--output", file("far" + std::to_string(client) + ".png")}));
+        client::start_program({path_of("surfcast"), "render", url_ + "/square", "--timeout", "290", "--resolution",
+                               "64,48", "--output", file("far" + std::to_string(client) + ".png")}));
   }
   store_.wait_for_held(1);
   EXPECT_FALSE(drawn("near").empty());
@@ -139,7 +140,7 @@ TEST_F(ServeStoreTest, ClientsSeeTheNameOfAModelAndTheLogItsUrl) {
 
 TEST_F(ServeStoreTest, AFolderThatCannotBeListedIsOneLineAndTheEnd) {
   const client::ProgramOutcome outcome =
-      client::run_program(SURFCAST_SERVER " serve --listen 127.0.0.1:0 " + store_.url("/none/") + " 2>&1");
+      client::run_program(path_of("surfcastd") + " serve --listen 127.0.0.1:0 " + store_.url("/none/") + " 2>&1");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.output.find("surfcastd: " + store_.url("/none/") + ": the store answers 404"), std::string::npos)
       << outcome.output;

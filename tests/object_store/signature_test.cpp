@@ -9,6 +9,7 @@
 #include "model/test_folder.h"
 #include "object_store/http_client.h"
 #include "object_store/range_server.h"
+#include "support/path_of.h"
 
 namespace surfcast::object_store {
 namespace {
@@ -70,8 +71,9 @@ TEST_F(SignatureTest, SignaturesAreThoseOfBotocore) {
       EXPECT_TRUE(request.headers.contains("authorization"));
     }
     write_requests(folder_ / "requests.json");
-    const client::ProgramOutcome outcome = client::run_program("/usr/bin/python3 " SURFCAST_CHECK_SIGNATURES " " +
-                                                               (folder_ / "requests.json").string() + " 2>&1");
+    const client::ProgramOutcome outcome =
+        client::run_program("/usr/bin/python3 " + path_of("tests/object_store/check_signatures.py") + " " +
+                            (folder_ / "requests.json").string() + " 2>&1");
     EXPECT_EQ(outcome.code, 0) << outcome.output;
   }
 }

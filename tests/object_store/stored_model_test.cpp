@@ -11,6 +11,7 @@
 #include "client/run_program.h"
 #include "model/round_trip.h"
 #include "object_store/range_server.h"
+#include "support/path_of.h"
 
 namespace surfcast::object_store {
 namespace {
@@ -48,9 +49,9 @@ class StoredModelTest : public ::testing::Test {
 
   /// Draws all of a model at its finest level.
   [[nodiscard]] client::ProgramOutcome draw(const std::string& model, const std::string& flags = {}) const {
-    return client::run_program(SURFCASTD " render " + model + " --resolution 160,120 --spacing 0 --output " +
-                               picture() + " --stats " + stats() + " --store-timeout 3 --store-stall-timeout 0.3 " +
-                               flags + " 2>&1 >/dev/null");
+    return client::run_program(path_of("surfcastd") + " render " + model +
+                               " --resolution 160,120 --spacing 0 --output " + picture() + " --stats " + stats() +
+                               " --store-timeout 3 --store-stall-timeout 0.3 " + flags + " 2>&1 >/dev/null");
   }
   [[nodiscard]] std::string local() const { return (folder_ / "sphere.surf").string(); }
   [[nodiscard]] std::string picture() const { return (folder_ / "picture.png").string(); }
@@ -95,7 +96,8 @@ TEST_F(StoredModelTest, ThePictureIsThatOfTheFileForAQuarterOfTheRequestsAndLitt
 
 TEST_F(StoredModelTest, InspectSaysOfTheUrlWhatItSaysOfTheFile) {
   const auto inspect = [&](const std::string& model) {
-    const client::ProgramOutcome outcome = client::run_program(SURFCASTD " inspect --verify --json " + model);
+    const client::ProgramOutcome outcome =
+        client::run_program(path_of("surfcastd") + " inspect --verify --json " + model);
     EXPECT_EQ(outcome.code, 0);
     nlohmann::json summary = nlohmann::json::parse(outcome.output);
     return summary;

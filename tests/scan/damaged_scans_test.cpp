@@ -22,6 +22,7 @@
 #include "scan/samples.h"
 #include "scan/tile_files.h"
 #include "scan/whole_scan.h"
+#include "support/path_of.h"
 #include "support/sample_size.h"
 
 namespace surfcast::scan {
@@ -54,7 +55,7 @@ void PrintTo(const Scan& scan, std::ostream* to) {
 // ---- scans
 
 std::string content_of_laz(const std::string& name) {
-  const std::vector<char> bytes = model::read_bytes(fs::path(SURFCAST_TEST_DATA) / "laz" / name);
+  const std::vector<char> bytes = model::read_bytes(fs::path(path_of("tests/data")) / "laz" / name);
   return {bytes.begin(), bytes.end()};
 }
 

@@ -13,6 +13,7 @@
 #include "scan/las_reader.h"
 #include "scan/scan_stream.h"
 #include "scan/whole_scan.h"
+#include "support/path_of.h"
 
 namespace surfcast::scan {
 namespace {
@@ -20,7 +21,7 @@ namespace {
 using ::testing::HasSubstr;
 
 std::filesystem::path data_file(const std::string& name) {
-  return std::filesystem::path(SURFCAST_TEST_DATA) / "laz" / name;
+  return std::filesystem::path(path_of("tests/data")) / "laz" / name;
 }
 
 std::string content_of(const std::string& name) {

@@ -14,6 +14,7 @@
 #include "simplify/point_tree.h"
 #include "simplify/simplify.h"
 #include "simplify/smooth_scenes.h"
+#include "support/path_of.h"
 
 namespace surfcast::testing {
 namespace {
@@ -30,7 +31,7 @@ struct Drawn {
 class LionGLTest : public RendererFixture {
  protected:
   surfel::SurfelCloud lion() {
-    const std::array<std::filesystem::path, 1> inputs{std::filesystem::path(SURFCAST_TEST_DATA) / "lion.drc"};
+    const std::array<std::filesystem::path, 1> inputs{std::filesystem::path(path_of("tests/data")) / "lion.drc"};
     const auto built = builder::build_model(inputs, folder_ / "lion.surf", {}, [](const builder::BuildStep&) {});
     EXPECT_TRUE(built) << (built ? "" : built.error().message);
     const Result<model::ModelFile> model = model::ModelFile::open(folder_ / "lion.surf");

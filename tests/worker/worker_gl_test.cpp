@@ -20,6 +20,7 @@
 #include "kinds/ball_scene.h"
 #include "model/test_folder.h"
 #include "service/renderer_factories.h"
+#include "support/path_of.h"
 #include "worker/worker_renderer.h"
 
 namespace surfcast::worker {
@@ -71,7 +72,7 @@ class WorkerRendererTest : public ::testing::Test {
 
   void start(milliseconds silence = milliseconds(60'000)) {
     WorkerConfig config;
-    config.command = {BALL_WORKER};
+    config.command = {path_of("ball_worker")};
     config.renderer.decoders = 2;
     config.pixels = 1024 * 1024;
     config.silence = silence;

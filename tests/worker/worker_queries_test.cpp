@@ -33,6 +33,7 @@
 #include "model/write_model.h"
 #include "service/local_queries.h"
 #include "support/clouds.h"
+#include "support/path_of.h"
 #include "worker/messages.h"
 #include "worker/shared_board.h"
 
@@ -131,7 +132,7 @@ class WorkerQueriesTest : public ::testing::Test {
 
   void start(const std::function<void(QueryWorkerConfig&)>& change = [](QueryWorkerConfig&) {}) {
     QueryWorkerConfig config;
-    config.command = {BALL_QUERY_WORKER};
+    config.command = {path_of("ball_query_worker")};
     change(config);
     auto queries = worker_queries(config, counts_);
     ASSERT_TRUE(queries) << queries.error().message;
