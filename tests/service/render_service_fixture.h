@@ -32,6 +32,9 @@ class RenderServiceTest : public ::testing::Test {
   void wait_for_drawing(int pictures) const {
     while (control_->drawn < pictures) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+  void wait_for_warm_ups(int steps) const {
+    while (control_->warmed_up < steps) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   static PictureJob job_for(const std::string& model) {
     PictureJob job{authorized(model)};
     job.request.width = 8;

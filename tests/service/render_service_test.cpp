@@ -270,9 +270,6 @@ TEST_F(RenderServiceTest, StoppingCancelsWhatIsDrawnAndWhatWaits) {
 
 TEST_F(RenderServiceTest, TheRendererWarmsUpWhileNobodyWaitsAndAgainAfterAPicture) {
   start();
-  const auto wait_for_warm_ups = [&](int times) {
-    while (control_->warmed_up < times) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  };
   wait_for_warm_ups(FakeRendererControl::kWarmUps);
   EXPECT_TRUE(draw(1, job_for("cube")).second.get());
   wait_for_warm_ups(FakeRendererControl::kWarmUps + 1);
@@ -281,14 +278,14 @@ TEST_F(RenderServiceTest, TheRendererWarmsUpWhileNobodyWaitsAndAgainAfterAPictur
 TEST_F(RenderServiceTest, APictureEndsTheStepThatWarmsUp) {
   control_->slow_to_warm_up = true;
   start();
-  while (control_->warmed_up == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  wait_for_warm_ups(1);
   EXPECT_TRUE(draw(1, job_for("cube")).second.get());
 }
 
 TEST_F(RenderServiceTest, StoppingEndsTheStepThatWarmsUp) {
   control_->slow_to_warm_up = true;
   start();
-  while (control_->warmed_up == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  wait_for_warm_ups(1);
   service_.reset();
 }
 

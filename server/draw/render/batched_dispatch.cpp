@@ -29,8 +29,8 @@ Status dispatch_in_batches(const Groups& groups, BatchSizer& sizer, const Preemp
     glFinish();
     sizer.record(count * width, watch.milliseconds());
     first += count;
+    if (preemption.yield_to_urgent()) bind();  // this work may cancel the picture
     if (preemption.cancelled()) return fail(ErrorKind::kCancelled, "cancelled");
-    if (preemption.yield_to_urgent()) bind();
   }
   return {};
 }
