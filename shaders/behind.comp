@@ -7,7 +7,7 @@
 #define SURFCAST_BEHIND
 #define SURFCAST_SELECTS
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;
 layout(local_size_x = SURFCAST_TILES_AT_ONCE) in;
 
@@ -35,7 +35,7 @@ bool leave_out_finished(inout LaneState state) {
 
 // Starts the lane's next column, if there is one.
 bool begin(inout LaneState state) {
-  uint group = first_group + gl_WorkGroupID.x;
+  uint group = work_group();
   uint slot = atomicAdd(next_tiles[group], 1u);
   uint index = span.x + group * span.z + slot;
   if (slot >= span.z || index >= span.y) return false;

@@ -14,7 +14,7 @@ layout(std430, binding = SURFCAST_BIND_COUNTERS) readonly buffer CountersBuffer 
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
 layout(binding = SURFCAST_UNIT_BOUNDS) uniform usamplerBuffer bounds;
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 
 #include "include/splat_bounds.glsl"
 
@@ -70,7 +70,7 @@ void add_large(uint i) {
 }
 
 void main() {
-  uint i = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_CHUNK) + gl_LocalInvocationID.x;
+  uint i = work_group() * uint(SURFCAST_CHUNK) + gl_LocalInvocationID.x;
 #ifdef SURFCAST_COUNTS_LARGE
   add_large(i);
 #else

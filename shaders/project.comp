@@ -19,7 +19,7 @@
 #include "include/transparent_surfel.glsl"
 #endif
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
 
 // Indices in the chunk: surfels with small splats from the front, others from the back.
@@ -393,7 +393,7 @@ void project_other(uvec4 run, BlockView block, uint place) {
 void main() {
   const uint lanes = uint(SURFCAST_PROJECT_LANES);
   uint lane = gl_LocalInvocationID.x;
-  uvec4 run = chunks[first_group + gl_WorkGroupID.x].run;
+  uvec4 run = chunks[work_group()].run;
   BlockView block = blocks[run.x];
   if (lane == 0u) {
     small_count = 0u;

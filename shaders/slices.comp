@@ -9,10 +9,10 @@ layout(local_size_x = SURFCAST_CHUNK) in;
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) writeonly buffer TileOffset { uint tile_offset[]; };
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 
 void main() {
-  uint tile = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_CHUNK) + gl_LocalInvocationID.x;
+  uint tile = work_group() * uint(SURFCAST_CHUNK) + gl_LocalInvocationID.x;
   if (tile >= uint(frame.tiles.z)) return;
   uint end = slice_count_at(tile + 1u, 0u);
   uint sum = 0u;

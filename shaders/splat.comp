@@ -17,7 +17,7 @@
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;
 const int kLanesAcross = SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS;  // per tile
 #ifdef SURFCAST_TOGETHER
@@ -71,7 +71,7 @@ ivec2 first_pixel(uint tile, ivec2 lane) {
 
 #ifdef SURFCAST_TOGETHER
 void main() {
-  uint at = span.x + first_group + gl_WorkGroupID.x;
+  uint at = span.x + work_group();
   if (at >= span.y) return;
   uint index = tile_order[at];
   TileLists tile = lists_of_tile(index);
@@ -100,7 +100,7 @@ struct LaneState {
 // Index within the work group of the lane's next tile; span.z or more if there is none.
 uint next_tile_slot(bool first) {
 #ifdef SURFCAST_DYNAMIC_TILES
-  return atomicAdd(next_tiles[first_group + gl_WorkGroupID.x], 1u);
+  return atomicAdd(next_tiles[work_group()], 1u);
 #else
   return first ? gl_LocalInvocationID.x / uint(kLanesAcross) : span.z;
 #endif
@@ -109,7 +109,7 @@ uint next_tile_slot(bool first) {
 // Starts the lane's next tile, if there is one.
 bool begin(inout LaneState state, bool first) {
   uint slot = next_tile_slot(first);
-  uint at = span.x + (first_group + gl_WorkGroupID.x) * span.z + slot;
+  uint at = span.x + work_group() * span.z + slot;
   if (slot >= span.z || at >= span.y) return false;
   uint index = tile_order[at];
   state.index = index;

@@ -13,7 +13,7 @@
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;  // first part and end
 #ifdef SURFCAST_TOGETHER
 layout(local_size_x = SURFCAST_PIXEL_LANES * SURFCAST_SHARES) in;
@@ -125,11 +125,11 @@ void write(ivec2 at, Pixel pixel) {
 void main() {
   uint lane = gl_LocalInvocationID.x;
 #ifdef SURFCAST_TOGETHER
-  uint index = first_group + gl_WorkGroupID.x;
+  uint index = work_group();
   bool listed = index < span.y;
   if (!listed) return;
 #else
-  uint index = (first_group + gl_WorkGroupID.x) * kPixels + lane / uint(SURFCAST_SILHOUETTE_SAMPLES);
+  uint index = work_group() * kPixels + lane / uint(SURFCAST_SILHOUETTE_SAMPLES);
   bool listed = index < span.y;
 #endif
   uvec2 part = listed ? part_at(index) : uvec2(0u, 1u);
@@ -145,10 +145,10 @@ void main() {
 #else
 void main() {
 #ifdef SURFCAST_TOGETHER
-  uint index = first_group + gl_WorkGroupID.x;
+  uint index = work_group();
   if (index >= span.y) return;
 #else
-  uint group = first_group + gl_WorkGroupID.x;
+  uint group = work_group();
   uint index = span.x + group * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
   if (index >= span.y) return;
 #endif

@@ -15,7 +15,7 @@ layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
 layout(binding = SURFCAST_UNIT_COLORS) uniform usamplerBuffer colors;
 #endif
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
 
 layout(std430, binding = SURFCAST_BIND_BLOCKS) readonly buffer Blocks { BlockView blocks[]; };
@@ -159,7 +159,7 @@ void project(uvec4 run, BlockView block, int at, int place) {
 }
 
 void main() {
-  uvec4 run = chunks[first_group + gl_WorkGroupID.x].run;
+  uvec4 run = chunks[work_group()].run;
   uint each = ellipsoid_texels(run.z);
   uint count = (run.z & SURFCAST_RUN_COUNT) / each;
   for (uint i = gl_LocalInvocationID.x; i < count; i += uint(SURFCAST_PROJECT_LANES)) {

@@ -7,7 +7,7 @@
 #include "include/frame.glsl"
 #include "gaussian/record.glsl"
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 // Number of lists, first entry of the round.
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec2 span;
 layout(local_size_x = SURFCAST_BLEND_LANES) in;
@@ -201,7 +201,7 @@ void store_row(ivec2 at, Row row, bool finished) {
 }
 
 void main() {
-  uint lane = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_BLEND_LANES) + gl_LocalInvocationID.x;
+  uint lane = work_group() * uint(SURFCAST_BLEND_LANES) + gl_LocalInvocationID.x;
   const uint kShares = 4u / uint(SURFCAST_BLEND_ROWS);  // lanes of a tile
   if (lane / kShares >= span.x) return;
   uvec4 list = tile_lists[lane / kShares];  // tile, first entry, number of entries

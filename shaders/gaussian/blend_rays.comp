@@ -9,7 +9,7 @@
 #include "include/frame.glsl"
 #include "gaussian/ray_record.glsl"
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#include "include/work_group.glsl"
 // Number of lists, first entry of the round.
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec2 span;
 const int kPixels = SURFCAST_RAY_GAUSSIAN_PIXELS;
@@ -283,7 +283,7 @@ void end_pixel(Pixel pixel, ivec2 at, bool finished) {
 }
 
 void main() {
-  uint lane = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_BLEND_LANES) + gl_LocalInvocationID.x;
+  uint lane = work_group() * uint(SURFCAST_BLEND_LANES) + gl_LocalInvocationID.x;
   if (lane / kLanesOfTile >= span.x) return;
   uvec4 list = tile_lists[lane / kLanesOfTile];  // tile, first entry, number of entries
   int within = kPixels * int(lane % kLanesOfTile);

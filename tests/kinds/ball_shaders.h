@@ -9,9 +9,9 @@ inline constexpr std::string_view kBallProject = R"GLSL(
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 #include "include/display_options.glsl"
+#include "include/work_group.glsl"
 #include "kinds/append_record.glsl"
 
-layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
 
 void project(uvec4 run, BlockView block, uint place) {
@@ -42,7 +42,7 @@ void project(uvec4 run, BlockView block, uint place) {
 }
 
 void main() {
-  uvec4 run = chunks[first_group + gl_WorkGroupID.x].run;
+  uvec4 run = chunks[work_group()].run;
   uint count = run.z & SURFCAST_RUN_COUNT;
   for (uint place = 2u * gl_LocalInvocationID.x; place < count; place += 2u * uint(SURFCAST_PROJECT_LANES)) {
     project(run, blocks[run.x], place);

@@ -2,11 +2,13 @@
 // precision. Differences are in units that matter in a picture: weights within the cutoff, pixels, shares.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <iostream>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -276,6 +278,27 @@ TEST_F(FilterGLTest, SumsOfManyTermsLoseLessThanTheirLastBits) {
   for (uint32_t i = 0; i < kTerms; ++i) exact += term(i);
   // Every term is truncated to the unit, 2^-24 of the largest term; the sum is rounded to single precision once.
   EXPECT_NEAR(out[0].x, exact, kTerms / double{out[0].y} + 2e-7 * exact);
+}
+
+TEST_F(FilterGLTest, GroupsAreDealtOnceEachAndEvenly) {
+  constexpr std::array kFiles{"include/work_group.glsl"};
+  for (const uint32_t count : {1U, 15U, 16U, 17U, 100U, 5000U}) {
+    std::vector<glm::vec4> cases;
+    for (uint32_t i = 0; i < count; ++i) cases.emplace_back(i, count, 0, 0);
+    const std::string body = "  out_[0].x = float(dealt(uint(in_[0].x), uint(in_[0].y)));\n";
+    const auto out = bench_->run(body, frame_of(100, 64, 64), 1, 1, cases, kFiles);
+    std::set<float> dealt;
+    double sum = 0;  // of the first half
+    for (uint32_t i = 0; i < count; ++i) {
+      dealt.insert(out[i].x);
+      if (i < count / 2) sum += out[i].x;
+    }
+    EXPECT_EQ(dealt.size(), count);
+    EXPECT_EQ(*dealt.rbegin(), static_cast<float>(count - 1));
+    if (count >= 100) {
+      EXPECT_NEAR(sum / (count / 2), 0.5 * count, 0.08 * count) << count;
+    }
+  }
 }
 
 }  // namespace

@@ -31,6 +31,18 @@ TEST(BatchSizer, AShortLastBatchDoesNotSlowDownTheNextPicture) {
   EXPECT_GE(sizer.groups() * 2, before);
 }
 
+TEST(BatchSizer, APassBeginsWithWhatFittedAtTheBeginningOfThePassBefore) {
+  BatchSizer sizer;
+  for (int pass = 0; pass < 5; ++pass) {
+    sizer.begin_pass();
+    sizer.record(sizer.groups(), static_cast<double>(sizer.groups()));  // what takes longest
+    for (int i = 0; i < 10; ++i) sizer.record(sizer.groups(), static_cast<double>(sizer.groups()) * 0.01);
+    EXPECT_EQ(sizer.groups(), 800U);
+  }
+  sizer.begin_pass();
+  EXPECT_EQ(sizer.groups(), 8U);
+}
+
 TEST(BatchSizer, BatchesOfNothingTeachNothing) {
   BatchSizer sizer = after(3, 0.1);
   const size_t before = sizer.groups();

@@ -17,6 +17,7 @@ Groups all_pixels(int width, int height) {
 Status dispatch_in_batches(const Groups& groups, BatchSizer& sizer, const Preemption& preemption,
                            const std::function<void()>& bind) {
   bind();
+  sizer.begin_pass();
   const size_t width = groups.width.value_or(1);
   for (size_t first = 0; first < groups.count;) {
     const size_t count = std::clamp<size_t>(sizer.groups() / width, 1, groups.count - first);

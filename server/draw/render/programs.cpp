@@ -172,16 +172,18 @@ Result<Programs> Programs::create(const KernelShape& shape, const std::string& d
   Programs programs;
   programs.shape_ = shape;
   programs.defines_ = defines + define("SURFCAST_SILHOUETTE_LANES", shape.silhouette_lanes) +
+                      (shape.deals_groups ? "#define SURFCAST_DEALS_GROUPS\n" : "") +
                       (shape.shifted_halves ? "#define SURFCAST_SHIFTED_HALVES\n" : "");
-  Result<gl::Program> slices = compute_program("slices.comp", "slices.comp", {}, defines);
+  const std::string& all = programs.defines_;
+  Result<gl::Program> slices = compute_program("slices.comp", "slices.comp", {}, all);
   if (!slices) return fail(slices);
-  Result<gl::Program> offsets = compute_program("bin_offsets.comp", "bin_offsets.comp", {}, defines);
+  Result<gl::Program> offsets = compute_program("bin_offsets.comp", "bin_offsets.comp", {}, all);
   if (!offsets) return fail(offsets);
-  Result<gl::Program> bin = compute_program("bin.comp", "bin.comp", {}, defines);
+  Result<gl::Program> bin = compute_program("bin.comp", "bin.comp", {}, all);
   if (!bin) return fail(bin);
-  Result<gl::Program> count = compute_program("bin.comp", "bin.comp", {}, defines + "#define SURFCAST_COUNTS_LARGE\n");
+  Result<gl::Program> count = compute_program("bin.comp", "bin.comp", {}, all + "#define SURFCAST_COUNTS_LARGE\n");
   if (!count) return fail(count);
-  Result<gl::Program> reaches = compute_program("bin.comp", "bin.comp", {}, defines + "#define SURFCAST_SELECTS\n");
+  Result<gl::Program> reaches = compute_program("bin.comp", "bin.comp", {}, all + "#define SURFCAST_SELECTS\n");
   if (!reaches) return fail(reaches);
   programs.bin_reaches_ = std::move(*reaches);
   programs.count_large_ = std::move(*count);

@@ -85,6 +85,7 @@ struct KernelShape {
   int tiles_at_once = 2;      ///< tiles that a work group of the splat kernel draws side by side
   int silhouette_lanes = 32;  ///< of a work group of the silhouette passes
   int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide the memory latency
+  bool deals_groups = false;    ///< threads take successive work groups of a batch (see include/work_group.glsl)
   bool shifted_halves = false;  ///< halves are converted without the built-in functions (see include/packing.glsl)
 
   /// Rows of a tile that a lane of the blending pass of Gaussians holds, if it does not hold one pixel.
@@ -108,7 +109,12 @@ struct VolumePrograms {
 
 /// The shape for devices whose lanes are those of a processor's vectors.
 constexpr KernelShape software_kernels() {
-  return {.whole_tiles = true, .tiles_at_once = 8, .silhouette_lanes = 16, .project_lanes = 8, .shifted_halves = true};
+  return {.whole_tiles = true,
+          .tiles_at_once = 8,
+          .silhouette_lanes = 16,
+          .project_lanes = 8,
+          .deals_groups = true,
+          .shifted_halves = true};
 }
 
 /// How Gaussians are drawn: affine footprints, discs, or exact in perspective.
