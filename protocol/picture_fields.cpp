@@ -180,7 +180,7 @@ constexpr std::array kFields{
                  number<&Picture::time_ms, &Picture::set_time_ms, &Plain::time_ms>(
                      {.above = true, .unit = "milliseconds"}, {"time_ms"})},
     PictureField{"shading", "shading", "auto|unlit|lit", "lighting of the surfels (default auto)",
-                 choice<&Picture::shading, &Picture::set_shading, &Plain::shading>({"shading"})},
+                 choice<&Picture::shading, &Picture::set_shading, &Plain::shading>({"shading", "auto"})},
     PictureField{"splat_convention", "splat-convention", "trained|exact",
                  "models of Gaussians as they were trained, or exact in perspective (default trained)",
                  choice<&Picture::splat_convention, &Picture::set_splat_convention, &Plain::splat_convention>(

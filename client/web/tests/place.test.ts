@@ -50,6 +50,7 @@ const display: DisplayOptions = {
   ],
   ghost: 0.1,
   xray: 'sorted',
+  shading: 'lit',
   upsideDown: true,
   splatConvention: 'exact',
   glyphs: {
@@ -93,7 +94,7 @@ describe('a link', () => {
     '#/lion?transfer=bone&shaded=yes&splat_convention=inria',
     '#/lion?iso=1,2&slice=x,3&medium=yes&opacity=2',
     '#/lion?iso=5;1,2,3,256&slice=k,1;1,2,3,0,0,0&opacity=-1',
-    '#/lion?opacity_by_class=5,6=2,256=0.5,a=1&ghost=2&xray=yes',
+    '#/lion?opacity_by_class=5,6=2,256=0.5,a=1&ghost=2&xray=yes&shading=bright',
     '#/lion?glyph=cube,3&glyph_radius=2&glyph_scale=-1&threshold=fa,2,1&lights=1,1,1',
     '#/lion?glyph_scale=Infinity&threshold=fa;mode,1&lights=1,1;0,0,1,1&color_by=attribute:',
     '#/lion?glyph=superq&threshold=,1&lights=1,1,1;0,0,0,1&color_by=attribute',

@@ -1,5 +1,5 @@
 import type { JSX } from 'preact';
-import { choices, defaultPlain } from '../generated/plain_options';
+import { choices, defaultPlain, type Choice } from '../generated/plain_options';
 import { formatNumber } from '../measure/format';
 import { colorSources, type ColorSourceName, type DisplayOptions } from '../state/display_options';
 import { classColor, className, gradientOf } from '../state/palette';
@@ -189,6 +189,22 @@ function Depth(): JSX.Element {
   );
 }
 
+const shadingLabels: Readonly<Record<Choice<'shading'>, string>> = { auto: 'Auto', unlit: 'Off', lit: 'On' };
+
+/** Scans with colours are not lit unless they are asked to be. */
+function SurfaceLighting(): JSX.Element {
+  return (
+    <Section title="Surface lighting">
+      <Choices
+        label="Surface lighting"
+        value={display.value.shading}
+        options={choices.shading.map((value) => ({ value, label: shadingLabels[value] }))}
+        onChange={(shading) => change({ shading })}
+      />
+    </Section>
+  );
+}
+
 const backgrounds: readonly (readonly [string, Rgb])[] = [
   ['Night', defaultPlain.background],
   ['Black', { red: 0, green: 0, blue: 0 }],
@@ -256,6 +272,7 @@ export function DisplayPanel(): JSX.Element {
       {(hasSurfels() || ellipsoids.value.length > 0) && <Coloring />}
       <Classes />
       {hasSurfels() && <OpacitySection />}
+      {hasSurfels() && <SurfaceLighting />}
       <Depth />
       <Background />
       <Detail />
