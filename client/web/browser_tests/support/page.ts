@@ -1,6 +1,7 @@
 import { readFile } from 'node:fs/promises';
 import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
 import { expect } from 'vitest';
+import { patience } from './patience';
 
 /** Actions and observations of a user, as short functions. */
 
@@ -33,7 +34,7 @@ export const phone: BrowserContextOptions = { viewport: { width: 360, height: 74
 /** A page whose errors fail the test that uses it. */
 export async function open(browser: Browser, options: BrowserContextOptions): Promise<{ page: Page; errors: string[] }> {
   const page = await (await browser.newContext(options)).newPage();
-  page.setDefaultTimeout(90_000);
+  page.setDefaultTimeout(patience);
   const errors: string[] = [];
   page.on('pageerror', (error) => errors.push(error.message));
   return { page, errors };

@@ -8,7 +8,7 @@ import { fromHex, toHex, type Rgb } from '../state/rgb';
 import { description, display, ellipsoids, hasSurfels } from '../state/store';
 import { Choices, NumberField, Section, Select, Slider } from './controls';
 import { GlyphSections } from './glyph_sections';
-import { OpacitySection } from './opacity_section';
+import { OpacitySections } from './opacity_section';
 import { GaussianSection, VolumeSections } from './volume_sections';
 
 const change = (part: Partial<DisplayOptions>): void => void (display.value = { ...display.peek(), ...part });
@@ -271,7 +271,7 @@ export function DisplayPanel(): JSX.Element {
       <GlyphSections />
       {(hasSurfels() || ellipsoids.value.length > 0) && <Coloring />}
       <Classes />
-      {hasSurfels() && <OpacitySection />}
+      {hasSurfels() && <OpacitySections />}
       {hasSurfels() && <SurfaceLighting />}
       <Depth />
       <Background />

@@ -64,17 +64,21 @@ function ClassOpacities(): JSX.Element | null {
   );
 }
 
-export function OpacitySection(): JSX.Element {
+export function OpacitySections(): JSX.Element {
   return (
-    <Section title="Opacity">
-      <Opacity />
-      <ClassOpacities />
-      <Choices
-        label="X-ray"
-        value={display.value.xray}
-        options={choices.xray.map((value) => ({ value, label: xrayLabels[value] }))}
-        onChange={(xray) => change({ xray })}
-      />
-    </Section>
+    <>
+      <Section title="Opacity">
+        <Opacity />
+        <ClassOpacities />
+      </Section>
+      <Section title="X-ray">
+        <Choices
+          label="X-ray"
+          value={display.value.xray}
+          options={choices.xray.map((value) => ({ value, label: xrayLabels[value] }))}
+          onChange={(xray) => change({ xray })}
+        />
+      </Section>
+    </>
   );
 }
