@@ -4,10 +4,10 @@
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
+#include "include/work_group.glsl"
 #define SURFCAST_BEHIND
 #define SURFCAST_SELECTS
 
-#include "include/work_group.glsl"
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;
 layout(local_size_x = SURFCAST_TILES_AT_ONCE) in;
 

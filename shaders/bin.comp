@@ -7,14 +7,13 @@
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 #include "include/depth_slices.glsl"
+#include "include/work_group.glsl"
 
 layout(local_size_x = SURFCAST_CHUNK) in;
 
 layout(std430, binding = SURFCAST_BIND_COUNTERS) readonly buffer CountersBuffer { Counters counters; };
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
 layout(binding = SURFCAST_UNIT_BOUNDS) uniform usamplerBuffer bounds;
-
-#include "include/work_group.glsl"
 
 #include "include/splat_bounds.glsl"
 

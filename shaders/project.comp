@@ -15,11 +15,11 @@
 #include "include/spacing.glsl"
 #include "include/splat_record.glsl"
 #include "include/surfel.glsl"
+#include "include/work_group.glsl"
 #ifdef SURFCAST_TRANSPARENT
 #include "include/transparent_surfel.glsl"
 #endif
 
-#include "include/work_group.glsl"
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
 
 // Indices in the chunk: surfels with small splats from the front, others from the back.

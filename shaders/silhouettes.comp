@@ -4,8 +4,8 @@
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
-
 #include "include/work_group.glsl"
+
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;  // first tile and end, in tile order
 layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;  // one tile per lane: parts with long lists stay adjacent
 
@@ -91,8 +91,7 @@ void list_pixels(uint tile, bool long_list, uint found) {
 }
 
 void main() {
-  uint group = work_group();
-  uint index = span.x + group * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
+  uint index = span.x + work_group() * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
   if (index >= span.y) return;
   int tile = int(tile_order[index]);
   uint found = find(ivec2(tile % frame.tiles.x, tile / frame.tiles.x) * kTile);

@@ -3,13 +3,12 @@
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 #include "include/depth_slices.glsl"
+#include "include/work_group.glsl"
 
 layout(local_size_x = SURFCAST_CHUNK) in;
 
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) writeonly buffer TileOffset { uint tile_offset[]; };
-
-#include "include/work_group.glsl"
 
 void main() {
   uint tile = work_group() * uint(SURFCAST_CHUNK) + gl_LocalInvocationID.x;

@@ -16,8 +16,8 @@
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
-
 #include "include/work_group.glsl"
+
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;
 const int kLanesAcross = SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS;  // per tile
 #ifdef SURFCAST_TOGETHER

@@ -12,8 +12,8 @@
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
-
 #include "include/work_group.glsl"
+
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;  // first part and end
 #ifdef SURFCAST_TOGETHER
 layout(local_size_x = SURFCAST_PIXEL_LANES * SURFCAST_SHARES) in;
@@ -148,8 +148,7 @@ void main() {
   uint index = work_group();
   if (index >= span.y) return;
 #else
-  uint group = work_group();
-  uint index = span.x + group * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
+  uint index = span.x + work_group() * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
   if (index >= span.y) return;
 #endif
   uvec2 part = part_at(index);

@@ -5,10 +5,10 @@
 // A list longer than a round is drawn in several dispatches: the depths wait in a buffer.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
+#include "include/work_group.glsl"
 #include "ellipsoid/record.glsl"
 #include "ellipsoid/samples.glsl"
 
-#include "include/work_group.glsl"
 // Number of lists, first entry of the round.
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec2 span;
 layout(local_size_x = SURFCAST_BLEND_LANES) in;

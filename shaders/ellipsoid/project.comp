@@ -7,6 +7,7 @@
 #include "include/packing.glsl"
 #include "include/srgb.glsl"
 #include "include/tile_range.glsl"
+#include "include/work_group.glsl"
 #include "ellipsoid/texel.glsl"
 #include "ellipsoid/record.glsl"
 #include "ellipsoid/geometry.glsl"
@@ -15,7 +16,6 @@ layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
 layout(binding = SURFCAST_UNIT_COLORS) uniform usamplerBuffer colors;
 #endif
 
-#include "include/work_group.glsl"
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
 
 layout(std430, binding = SURFCAST_BIND_BLOCKS) readonly buffer Blocks { BlockView blocks[]; };

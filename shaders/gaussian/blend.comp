@@ -5,9 +5,9 @@
 // A list longer than a round is drawn in several dispatches: the state of its pixels waits in a buffer.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
+#include "include/work_group.glsl"
 #include "gaussian/record.glsl"
 
-#include "include/work_group.glsl"
 // Number of lists, first entry of the round.
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec2 span;
 layout(local_size_x = SURFCAST_BLEND_LANES) in;

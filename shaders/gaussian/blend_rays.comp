@@ -7,9 +7,9 @@
 // blended.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
+#include "include/work_group.glsl"
 #include "gaussian/ray_record.glsl"
 
-#include "include/work_group.glsl"
 // Number of lists, first entry of the round.
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec2 span;
 const int kPixels = SURFCAST_RAY_GAUSSIAN_PIXELS;

@@ -8,6 +8,7 @@
 #include "include/frame.glsl"
 #include "include/display_options.glsl"
 #include "include/tile_range.glsl"
+#include "include/work_group.glsl"
 layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
 #include "gaussian/harmonics.glsl"
 #if defined(SURFCAST_FLAT) || defined(SURFCAST_EXACT)
@@ -17,7 +18,6 @@ layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
 #include "gaussian/record.glsl"
 #endif
 
-#include "include/work_group.glsl"
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
 
 layout(std430, binding = SURFCAST_BIND_BLOCKS) readonly buffer Blocks { BlockView blocks[]; };

@@ -280,21 +280,21 @@ TEST_F(FilterGLTest, SumsOfManyTermsLoseLessThanTheirLastBits) {
   EXPECT_NEAR(out[0].x, exact, kTerms / double{out[0].y} + 2e-7 * exact);
 }
 
-TEST_F(FilterGLTest, GroupsAreDealtOnceEachAndEvenly) {
+TEST_F(FilterGLTest, GroupsAreInterleavedOnceEachAndEvenly) {
   constexpr std::array kFiles{"include/work_group.glsl"};
   for (const uint32_t count : {1U, 15U, 16U, 17U, 100U, 5000U}) {
     std::vector<glm::vec4> cases;
     for (uint32_t i = 0; i < count; ++i) cases.emplace_back(i, count, 0, 0);
-    const std::string body = "  out_[0].x = float(dealt(uint(in_[0].x), uint(in_[0].y)));\n";
+    const std::string body = "  out_[0].x = float(interleaved(uint(in_[0].x), uint(in_[0].y)));\n";
     const auto out = bench_->run(body, frame_of(100, 64, 64), 1, 1, cases, kFiles);
-    std::set<float> dealt;
+    std::set<float> groups;
     double sum = 0;  // of the first half
     for (uint32_t i = 0; i < count; ++i) {
-      dealt.insert(out[i].x);
+      groups.insert(out[i].x);
       if (i < count / 2) sum += out[i].x;
     }
-    EXPECT_EQ(dealt.size(), count);
-    EXPECT_EQ(*dealt.rbegin(), static_cast<float>(count - 1));
+    EXPECT_EQ(groups.size(), count);
+    EXPECT_EQ(*groups.rbegin(), static_cast<float>(count - 1));
     if (count >= 100) {
       EXPECT_NEAR(sum / (count / 2), 0.5 * count, 0.08 * count) << count;
     }

@@ -11,6 +11,7 @@ namespace surfcast::render {
 /// as fitted at the beginning of the pass before.
 class BatchSizer {
  public:
+  /// Before the first batch of a pass.
   void begin_pass();
   /// Work groups of the next batch, at least 1.
   [[nodiscard]] size_t groups() const { return groups_; }

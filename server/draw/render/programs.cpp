@@ -172,7 +172,7 @@ Result<Programs> Programs::create(const KernelShape& shape, const std::string& d
   Programs programs;
   programs.shape_ = shape;
   programs.defines_ = defines + define("SURFCAST_SILHOUETTE_LANES", shape.silhouette_lanes) +
-                      (shape.deals_groups ? "#define SURFCAST_DEALS_GROUPS\n" : "") +
+                      (shape.interleaves_groups ? "#define SURFCAST_INTERLEAVES_GROUPS\n" : "") +
                       (shape.shifted_halves ? "#define SURFCAST_SHIFTED_HALVES\n" : "");
   const std::string& all = programs.defines_;
   Result<gl::Program> slices = compute_program("slices.comp", "slices.comp", {}, all);

@@ -85,8 +85,8 @@ struct KernelShape {
   int tiles_at_once = 2;      ///< tiles that a work group of the splat kernel draws side by side
   int silhouette_lanes = 32;  ///< of a work group of the silhouette passes
   int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide the memory latency
-  bool deals_groups = false;    ///< threads take successive work groups of a batch (see include/work_group.glsl)
-  bool shifted_halves = false;  ///< halves are converted without the built-in functions (see include/packing.glsl)
+  bool interleaves_groups = false;  ///< threads take successive work groups of a batch (see include/work_group.glsl)
+  bool shifted_halves = false;      ///< halves are converted without the built-in functions (see include/packing.glsl)
 
   /// Rows of a tile that a lane of the blending pass of Gaussians holds, if it does not hold one pixel.
   [[nodiscard]] int blend_rows() const { return whole_tiles ? SURFCAST_TILE_HEIGHT : 1; }
@@ -113,7 +113,7 @@ constexpr KernelShape software_kernels() {
           .tiles_at_once = 8,
           .silhouette_lanes = 16,
           .project_lanes = 8,
-          .deals_groups = true,
+          .interleaves_groups = true,
           .shifted_halves = true};
 }
 

@@ -62,6 +62,10 @@ interface ChoicesProps<Value extends string> {
   readonly onChange: (value: Value) => void;
 }
 
+/** The options of such a group, in the order of their labels. */
+export const optionsOf = <Value extends string>(labels: Readonly<Record<Value, string>>) =>
+  (Object.keys(labels) as Value[]).map((value) => ({ value, label: labels[value] }));
+
 /** A group of radio buttons side by side. */
 export function Choices<Value extends string>(props: ChoicesProps<Value>): JSX.Element {
   const name = useId();

@@ -6,7 +6,7 @@ import { classColor, className, gradientOf } from '../state/palette';
 import { attributeNames, attributeRange } from '../state/ellipsoids';
 import { fromHex, toHex, type Rgb } from '../state/rgb';
 import { description, display, ellipsoids, hasSurfels } from '../state/store';
-import { Choices, NumberField, Section, Select, Slider } from './controls';
+import { Choices, NumberField, optionsOf, Section, Select, Slider } from './controls';
 import { GlyphSections } from './glyph_sections';
 import { OpacitySections } from './opacity_section';
 import { GaussianSection, VolumeSections } from './volume_sections';
@@ -198,7 +198,7 @@ function SurfaceLighting(): JSX.Element {
       <Choices
         label="Surface lighting"
         value={display.value.shading}
-        options={choices.shading.map((value) => ({ value, label: shadingLabels[value] }))}
+        options={optionsOf(shadingLabels)}
         onChange={(shading) => change({ shading })}
       />
     </Section>

@@ -1,11 +1,9 @@
 import type { JSX } from 'preact';
-import { choices } from '../generated/plain_options';
 import type { DisplayOptions } from '../state/display_options';
 import {
   anglesOf,
   directionAt,
   firstLight,
-  glyphShapes,
   maxLights,
   maxSharpness,
   maxThresholds,
@@ -19,7 +17,7 @@ import {
 import { attributeNames, attributeRange, usualScale } from '../state/ellipsoids';
 import { display, ellipsoids, hasSurfels } from '../state/store';
 import { decimalsFor, openVolume } from '../state/volume';
-import { Choices, IconButton, NumberField, Section, Select, Slider } from './controls';
+import { Choices, IconButton, NumberField, optionsOf, Section, Select, Slider } from './controls';
 import { Opacity } from './opacity_section';
 import { SliceSection } from './surface_sections';
 
@@ -244,7 +242,7 @@ export function GlyphSections(): JSX.Element | null {
         <Choices
           label="Glyph"
           value={shape}
-          options={glyphShapes.map((value) => ({ value, label: shapeLabels[value] }))}
+          options={optionsOf(shapeLabels)}
           onChange={(value) => set({ shape: value })}
         />
         {shape === 'superquadric' && (
@@ -257,7 +255,7 @@ export function GlyphSections(): JSX.Element | null {
         <Choices
           label="Semi-axes by"
           value={radius}
-          options={choices.glyphRadius.map((value) => ({ value, label: radiusLabels[value] }))}
+          options={optionsOf(radiusLabels)}
           onChange={(value) => set({ radius: value, scale: undefined })}
         />
         <Size />

@@ -1,9 +1,9 @@
 import type { JSX } from 'preact';
-import { choices, type Choice } from '../generated/plain_options';
+import type { Choice } from '../generated/plain_options';
 import type { DisplayOptions } from '../state/display_options';
 import { className } from '../state/palette';
 import { description, display } from '../state/store';
-import { Choices, Section, Slider } from './controls';
+import { Choices, optionsOf, Section, Slider } from './controls';
 
 const change = (part: Partial<DisplayOptions>): void => void (display.value = { ...display.peek(), ...part });
 
@@ -75,7 +75,7 @@ export function OpacitySections(): JSX.Element {
         <Choices
           label="X-ray"
           value={display.value.xray}
-          options={choices.xray.map((value) => ({ value, label: xrayLabels[value] }))}
+          options={optionsOf(xrayLabels)}
           onChange={(xray) => change({ xray })}
         />
       </Section>

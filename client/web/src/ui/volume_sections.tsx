@@ -1,12 +1,12 @@
 import type { JSX } from 'preact';
 import { chooseTool } from '../input/keyboard';
-import { choices, type Choice } from '../generated/plain_options';
+import type { Choice } from '../generated/plain_options';
 import type { DisplayOptions } from '../state/display_options';
 import { description, display, hasSurfels, panel, tool } from '../state/store';
 import { decimalsFor, openVolume, pointsOf, setWindow, windowed } from '../state/volume';
 import type { PresetName, TransferPoint } from '../volume/transfer';
 import { windowNow } from '../volume/window';
-import { Choices, NumberField, Section, Switch } from './controls';
+import { Choices, NumberField, optionsOf, Section, Switch } from './controls';
 import { Opacity } from './opacity_section';
 import { SliceSection, SurfaceSection } from './surface_sections';
 import { TransferEditor } from './transfer_editor';
@@ -97,7 +97,7 @@ export function GaussianSection(): JSX.Element | null {
       <Choices
         label="Convention"
         value={display.value.splatConvention}
-        options={choices.splatConvention.map((value) => ({ value, label: conventionLabels[value] }))}
+        options={optionsOf(conventionLabels)}
         onChange={(splatConvention) => change({ splatConvention })}
       />
       {!openVolume() && !hasSurfels() && <Opacity />}
