@@ -33,16 +33,16 @@ layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_
 layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer normals;
 #endif
 
-// A splat is small if its ellipse hardly changes over its own extent. The exact variance differs from that at the
-// centre by the tilt of the kernel times the angle of the splat. The gain differs by that angle itself, because a pixel
-// of a wide and coarse picture covers a large part of the splat.
-const float kSmallExtent = 24.0;        // pixels
-const float kSmallAngle = 0.25;         // tangent
-const float kSmallPerspective = 0.02;  // relative change of the standard deviation
+// A splat is small if its ellipse hardly changes over its own extent. The exact variance in a pixel differs from that
+// at the centre, relatively, by the angle of the kernel. The gain differs by the angle of the splat, because a pixel of
+// a wide and coarse picture covers a large part of it.
+const float kSmallExtent = 24.0;      // pixels
+const float kSmallAngle = 0.25;       // tangent
+const float kSmallDeviation = 0.005;  // of the kernel, as a tangent
 // The same for surfels that stand in for finer ones. They are mostly hidden, or soon replaced. Large splats among the
 // small ones of a tile make it several times as slow to draw.
 const float kCoarseExtent = 64.0;
-const float kCoarsePerspective = 0.5;
+const float kCoarseDeviation = 0.02;
 
 struct Surfel {
   vec3 o;  // camera frame
@@ -246,8 +246,8 @@ void project_large(Surfel s, bool reaches_eye_plane, float gain) {
 
 bool is_small(bool coarse, float sigma, float extent, float depth) {
   float most = coarse ? kCoarseExtent : kSmallExtent;
-  float change = coarse ? kCoarsePerspective : kSmallPerspective;
-  return extent <= min(most, kSmallAngle * eta()) && sigma * extent <= change * depth;
+  float deviation = coarse ? kCoarseDeviation : kSmallDeviation;
+  return extent <= min(most, kSmallAngle * eta()) && sigma <= deviation * depth;
 }
 
 // True if the splat is small for every orientation of the surfel.
