@@ -28,7 +28,7 @@ struct LaneState {
 
 // Nothing is behind the last surface of a pixel that is finished. False if all are.
 bool leave_out_finished(inout LaneState state) {
-  BoolRows unfinished = unfinished_rows(state.light[0], state.limit[0]);
+  BoolRows unfinished = unfinished_rows(state.light[0], state.limit[0], state.layer);
   state.limit[0] = mix(Rows(0.0), state.limit[0], unfinished);
   return any_of(unfinished);
 }
@@ -77,7 +77,7 @@ void main() {
   bool drawing = begin(state);
   while (drawing) {
     vec2 pixel = vec2(frame.region.xy + state.local) + 0.5;
-    draw_layer(state.tile, false, state.words, pixel, state.limit, state.light);
+    draw_layer(state.tile, state.layer, state.words, pixel, state.limit, state.light);
     ++state.layer;
     bool more = leave_out_finished(state);
     if (more && state.layer < kMaxLayers) continue;

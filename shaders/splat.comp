@@ -126,7 +126,7 @@ bool begin(inout LaneState state, bool first) {
 void hand_over_unfinished(LaneState state) {
   uint unfinished_columns = 0u;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    if (any_of(unfinished_rows(state.light[c], state.limit[c]))) unfinished_columns |= 1u << uint(c);
+    if (any_of(unfinished_rows(state.light[c], state.limit[c], 1))) unfinished_columns |= 1u << uint(c);
   }
   // (A loop, because most tiles have none: lanes run through all branches.)
   for (; unfinished_columns != 0u; unfinished_columns &= unfinished_columns - 1u) {
@@ -147,14 +147,14 @@ void main() {
   while (drawing) {
     vec2 pixel = vec2(frame.region.xy + state.local) + 0.5;
 #if defined(SURFCAST_SELECTS) && !defined(SURFCAST_LARGE)
-    state.front = draw_layer(state.tile, true, 0u, pixel, state.limit, state.light);
+    state.front = draw_layer(state.tile, 0, 0u, pixel, state.limit, state.light);
     hand_over_unfinished(state);
 #elif defined(SURFCAST_MARKS)
     float peak;
     bool more = draw_front(state.tile, pixel, state.limit, state.light, peak);
     state.front = state.limit;
     for (int layer = 1; more && layer < kMaxLayers; ++layer) {
-      more = draw_behind(state.tile, pixel, state.limit, state.light, peak);
+      more = draw_behind(state.tile, layer, pixel, state.limit, state.light, peak);
     }
 #else
     bool more = draw_layer(state.tile, state.layer, pixel, state.limit, state.light);

@@ -173,7 +173,7 @@ void main() {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     if (c < count) write_mean(light[c], places[c]);
 #if defined(SURFCAST_SELECTS) && !defined(SURFCAST_LARGE) && !defined(SURFCAST_TOGETHER)
-    if (!any_of(unfinished_rows(light[c], limit[c]))) continue;
+    if (!any_of(unfinished_rows(light[c], limit[c], 1))) continue;
     hand_over(part.x, uint(findLSB(column_bits[c])), limit[c], light[c]);
 #endif
   }

@@ -3,6 +3,11 @@
 #include "include/rows.glsl"
 
 const float kOpaque = 1.0 / 128.0;  // transmittance below which another layer is invisible
+
+// The transmittance up to which the surface of this number, from 0, is not looked for. Behind three surfaces it is
+// larger: a lane whose pixels need the most surfaces holds up all others.
+float opaque_before(int layer) { return layer < 3 ? kOpaque : 4.0 * kOpaque; }
+
 #ifdef SURFCAST_BLENDS_BEHIND
 // The front surface, and all that is behind it as a second one, whose colour is the mean of the fragments there.
 const int kMaxLayers = 2;
@@ -72,23 +77,24 @@ void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
 }
 
 // Where the surface of a column is looked for from: infinitely far.
-Rows surface_at_first(Light light) {
-  return mix(Rows(0.0), Rows(kHidesAll), at_most(light.transmittance, Rows(kOpaque)));
+Rows surface_at_first(Light light, int layer) {
+  return mix(Rows(0.0), Rows(kHidesAll), at_most(light.transmittance, Rows(opaque_before(layer))));
 }
 
-// Blends a surface behind those drawn so far. False if no surface behind it can be visible.
-bool composite_columns(inout LightColumns light, ColumnSums sums, Columns before, Columns surface, float one,
+// Blends the surface of this number behind those drawn so far. False if no surface behind it can be visible.
+bool composite_columns(inout LightColumns light, ColumnSums sums, int layer, Columns before, Columns surface, float one,
                        vec2 pixel) {
+  Rows least = Rows(opaque_before(layer + 1));
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
 #ifdef SURFCAST_KEEPS_DEPTHS
-    BoolRows open = less(Rows(kOpaque), light[c].transmittance);
+    BoolRows open = less(Rows(opaque_before(layer)), light[c].transmittance);
 #endif
     composite(light[c], sums[c], before[c], surface[c], one, column(pixel, c), c);
 #ifdef SURFCAST_KEEPS_DEPTHS
-    opaque[c] = mix(opaque[c], surface[c], both(open, at_most(light[c].transmittance, Rows(kOpaque))));
+    opaque[c] = mix(opaque[c], surface[c], both(open, at_most(light[c].transmittance, least)));
 #endif
-    more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
+    more = more || any_of(both(less(Rows(0.0), surface[c]), less(least, light[c].transmittance)));
   }
   keep_layers(pixel);
   return more;
@@ -124,7 +130,7 @@ bool draw_front(TileLists tile, vec2 pixel, inout Columns limit, inout LightColu
   Columns surface;
   ColumnSums sums;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    surface[c] = surface_at_first(light[c]);
+    surface[c] = surface_at_first(light[c], 0);
     sums[c] = sums_zero();
   }
   peak = 0.0;
@@ -133,17 +139,18 @@ bool draw_front(TileLists tile, vec2 pixel, inout Columns limit, inout LightColu
   accumulate_and_mark(tile.first_small, smalls, tile.smalls, pixel, limit, surface, unit, sums);
   Columns before = limit;
   limit = surface;
-  return composite_columns(light, sums, before, surface, 1.0 / unit, pixel);
+  return composite_columns(light, sums, 0, before, surface, 1.0 / unit, pixel);
 }
 
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
-bool draw_behind(TileLists tile, vec2 pixel, inout Columns limit, inout LightColumns light, inout float peak) {
+bool draw_behind(TileLists tile, int layer, vec2 pixel, inout Columns limit, inout LightColumns light,
+                 inout float peak) {
   Columns surface;
   ColumnSums sums;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     // Nothing is behind the last surface of a pixel that is finished.
-    limit[c] = mix(Rows(0.0), limit[c], less(Rows(kOpaque), light[c].transmittance));
-    surface[c] = surface_at_first(light[c]);
+    limit[c] = mix(Rows(0.0), limit[c], less(Rows(opaque_before(layer)), light[c].transmittance));
+    surface[c] = surface_at_first(light[c], layer);
     sums[c] = sums_zero();
   }
   uint smalls = find_surface_marked(tile.first_small, tile.smalls, pixel, limit, surface, peak);
@@ -151,7 +158,7 @@ bool draw_behind(TileLists tile, vec2 pixel, inout Columns limit, inout LightCol
   accumulate_marked(tile.first_small, smalls, pixel, limit, surface, unit, sums);
   Columns before = limit;
   limit = surface;
-  return composite_columns(light, sums, before, surface, 1.0 / unit, pixel);
+  return composite_columns(light, sums, layer, before, surface, 1.0 / unit, pixel);
 }
 #else
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
@@ -160,7 +167,7 @@ bool draw_layer(TileLists tile, int layer, vec2 pixel, inout Columns limit, inou
   Columns surface;
   ColumnSums sums;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    surface[c] = surface_at_first(light[c]);
+    surface[c] = surface_at_first(light[c], layer);
     sums[c] = sums_zero();
   }
   float peak = 0.0;
@@ -196,7 +203,7 @@ bool draw_layer(TileLists tile, int layer, vec2 pixel, inout Columns limit, inou
 #endif
   Columns before = limit;
   limit = surface;
-  return composite_columns(light, sums, before, surface, 1.0 / unit, pixel);
+  return composite_columns(light, sums, layer, before, surface, 1.0 / unit, pixel);
 }
 
 // Draws the first `wanted` columns of a lane.

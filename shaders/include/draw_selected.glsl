@@ -23,10 +23,10 @@ struct Found {
   uint count;  // entries of the list up to the surfaces
 };
 
-Found nothing_found(TileLists tile, LightColumns light) {
+Found nothing_found(TileLists tile, LightColumns light, int layer) {
   Found found;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    found.surface[c] = surface_at_first(light[c]);
+    found.surface[c] = surface_at_first(light[c], layer);
     found.deepest[c] = Rows(kInFront);
   }
   found.peak = 0.0;
@@ -35,9 +35,9 @@ Found nothing_found(TileLists tile, LightColumns light) {
 }
 
 // As find_surface_small, among the marked entries.
-Found find_surface_selected(TileLists tile, uint words, vec2 pixel, Columns limit, LightColumns light) {
+Found find_surface_selected(TileLists tile, int layer, uint words, vec2 pixel, Columns limit, LightColumns light) {
   float footprint = 1.0 / eta();
-  Found found = nothing_found(tile, light);
+  Found found = nothing_found(tile, light, layer);
   Walk walk = Walk(0u, 0u, 0u);
   while (is_left(walk, words)) {
     uint k;
@@ -113,20 +113,20 @@ void accumulate_selected(TileLists tile, uint words, vec2 pixel, Columns limit, 
 }
 
 // Draws the nearest surface behind `limit`, and where no other is behind it, all the rest. The surface is the new
-// limit, 0 where nothing is left. `words`: of marks, which behind.comp keeps from surface to surface. `first`: this is
-// the first surface of the pixels. Returns the surface.
-Columns draw_layer(TileLists tile, bool first, uint words, vec2 pixel, inout Columns limit, inout LightColumns light) {
-  Found found = nothing_found(tile, light);
+// limit, 0 where nothing is left. `layer`: its number. `words`: of marks, which behind.comp keeps from surface to
+// surface. Returns the surface.
+Columns draw_layer(TileLists tile, int layer, uint words, vec2 pixel, inout Columns limit, inout LightColumns light) {
+  Found found = nothing_found(tile, light, layer);
 #if defined(SURFCAST_BEHIND)
-  found = find_surface_selected(tile, words, pixel, limit, light);
+  found = find_surface_selected(tile, layer, words, pixel, limit, light);
 #elif defined(SURFCAST_SUPERSAMPLED)
   words = select_small(tile.first_small, tile.smalls, wanted_between(light, limit, found.surface));
-  found = find_surface_selected(tile, words, pixel, limit, light);
+  found = find_surface_selected(tile, layer, words, pixel, limit, light);
 #else
   found.count = find_surface_small(tile.first_small, tile.smalls, pixel, limit, found.surface, found.peak);
 #endif
 #ifdef SURFCAST_LEAVES_TO_SAMPLES
-  if (first) leave_to_samples(found.surface, ivec2(pixel) - frame.region.xy, light);
+  if (layer == 0) leave_to_samples(found.surface, ivec2(pixel) - frame.region.xy, light);
 #endif
   LaneSums sums;
   Columns last;
@@ -162,5 +162,5 @@ Columns draw_layer(TileLists tile, bool first, uint words, vec2 pixel, inout Col
 // Draws the first surface of the first `wanted` columns of a lane.
 void draw(TileLists tile, int wanted, vec2 pixel, out Columns limit, out LightColumns light) {
   begin_drawing(wanted, limit, light);
-  draw_layer(tile, true, 0u, pixel, limit, light);
+  draw_layer(tile, 0, 0u, pixel, limit, light);
 }

@@ -126,13 +126,13 @@ void accumulate_together(uint first, uint count, vec2 pixel, Columns limit, Colu
 
 // Draws the nearest surface behind `limit`, which becomes the new limit. `drawing`: the lane's pixels are not finished.
 // False if no pixel of the tile needs another surface.
-bool draw_layer_together(TileLists tile, vec2 pixel, inout bool drawing, inout Columns limit,
+bool draw_layer_together(TileLists tile, int layer, vec2 pixel, inout bool drawing, inout Columns limit,
                          inout LightColumns light) {
   clear_shared();
   Columns surface;
   ColumnSums sums;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    surface[c] = drawing ? surface_at_first(light[c]) : Rows(kHidesAll);
+    surface[c] = drawing ? surface_at_first(light[c], layer) : Rows(kHidesAll);
     sums[c] = sums_zero();
   }
   float peak = 0.0;
@@ -146,7 +146,7 @@ bool draw_layer_together(TileLists tile, vec2 pixel, inout bool drawing, inout C
   accumulate_large(tile.first_large, tile.larges, own_share(), kShares, pixel, limit, surface, unit, sums);
 #endif
   share_sums(sums);
-  if (drawing) drawing = composite_columns(light, sums, limit, surface, 1.0 / unit, pixel);
+  if (drawing) drawing = composite_columns(light, sums, layer, limit, surface, 1.0 / unit, pixel);
   limit = surface;
   if (drawing) shared_more = 1u;
   barrier();
@@ -161,7 +161,7 @@ void draw_together(TileLists tile, int wanted, vec2 pixel, out Columns front, ou
   bool more = true;
   int layers = layers_for(tile.smalls + tile.larges);
   for (int layer = 0; more && layer < layers; ++layer) {
-    more = draw_layer_together(tile, pixel, drawing, limit, light);
+    more = draw_layer_together(tile, layer, pixel, drawing, limit, light);
     if (layer == 0) front = limit;
   }
 }

@@ -31,8 +31,9 @@ float largest_of(Rows a) { return a; }
 float largest_of(Rows a) { return max(max(a.x, a.y), max(a.z, a.w)); }
 #endif
 
-BoolRows unfinished_rows(Light light, Rows limit) {
-  return both(less(Rows(0.0), limit), less(Rows(kOpaque), light.transmittance));
+// Rows that need the surface of this number.
+BoolRows unfinished_rows(Light light, Rows limit, int layer) {
+  return both(less(Rows(0.0), limit), less(Rows(opaque_before(layer)), light.transmittance));
 }
 
 // What may belong to the pixels that are not finished: everything between `limit` and `surface` (inverse depths).
@@ -41,7 +42,7 @@ Wanted wanted_between(LightColumns light, Columns limit, Columns surface) {
   Rows nearest = Rows(0.0);
   Rows farthest = Rows(kHidesAll);
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    BoolRows open = unfinished_rows(light[c], limit[c]);
+    BoolRows open = unfinished_rows(light[c], limit[c], 0);
     pixels |= bits_of_rows(open, c);
     nearest = larger(nearest, mix(Rows(0.0), limit[c], open));
     farthest = smaller(farthest, mix(Rows(kHidesAll), surface[c], open));
