@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from patience import PATIENCE
 
 import surfcast
 from surfcast import aio
@@ -220,7 +221,7 @@ def test_an_interrupt_cancels_the_picture() -> None:
         with surfcast.connect(runner.run(listening.__aenter__())) as client:
             with pytest.raises(KeyboardInterrupt):
                 client["a"].render()
-            drawn, cancel = requests.get(timeout=60), requests.get(timeout=60)
+            drawn, cancel = requests.get(timeout=PATIENCE), requests.get(timeout=PATIENCE)
             assert cancel.cancel.request_id == drawn.id
         runner.run(listening.__aexit__(None, None, None))
     finally:
@@ -258,7 +259,7 @@ def test_an_interrupt_before_the_wait_cancels_what_has_begun(monkeypatch: pytest
 def test_a_view_keeps_its_connection(running: RunningServer) -> None:
     view = running.connect()["field"].view(resolution=SIZE)
     gc.collect()
-    assert view.wait_converged(timeout=60).picture.converged
+    assert view.wait_converged(timeout=PATIENCE).picture.converged
     view.close()
 
 
@@ -266,7 +267,7 @@ def test_closing_ends_what_other_threads_wait_for(running: RunningServer) -> Non
     ended: queue.Queue[BaseException] = queue.Queue()
     client = running.connect()
     with client["field"].view(resolution=SIZE) as view:
-        last = view.wait_converged(timeout=60)
+        last = view.wait_converged(timeout=PATIENCE)
 
         def wait() -> None:
             try:
@@ -277,7 +278,7 @@ def test_closing_ends_what_other_threads_wait_for(running: RunningServer) -> Non
         thread = threading.Thread(target=wait)
         thread.start()
         client.close()
-        assert isinstance(ended.get(timeout=60), surfcast.ConnectionLost)
+        assert isinstance(ended.get(timeout=PATIENCE), surfcast.ConnectionLost)
         thread.join()
 
 
@@ -307,7 +308,7 @@ def test_a_killed_server_is_a_lost_connection(models: Path) -> None:
         with running.connect(reconnect=0.2) as client:
             field = client["field"]
             with field.view(resolution=SIZE) as view:
-                view.wait_converged(timeout=60)
+                view.wait_converged(timeout=PATIENCE)
                 newest = view.latest
                 running.kill()
                 with pytest.raises(surfcast.ConnectionLost):
@@ -322,13 +323,13 @@ def test_a_connection_comes_back_with_its_views(models: Path) -> None:
         with running.connect(reconnect=60) as client:
             field = client["field"]
             with field.view(resolution=SIZE) as view:
-                before = view.wait_converged(timeout=60)
+                before = view.wait_converged(timeout=PATIENCE)
                 running.stop()
                 with server(models, listen=f"127.0.0.1:{port}"):
-                    after = view.next(after=before, timeout=60)
+                    after = view.next(after=before, timeout=PATIENCE)
                     assert after.picture.resolution
                     view.update(shading="lit")
-                    lit = view.wait_converged(timeout=60)
+                    lit = view.wait_converged(timeout=PATIENCE)
                     assert lit.picture.data == field.render(resolution=SIZE, shading="lit").data
 
 

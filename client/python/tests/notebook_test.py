@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from browser import open_page
 from nbclient.client import NotebookClient
+from patience import PATIENCE
 from sample_models import SURFCASTD
 
 import surfcast
@@ -65,7 +66,7 @@ class FrontEnd:
 
     def next(self) -> bytes:
         """The next frame, which is painted."""
-        frame = self.frames.get(timeout=60)
+        frame = self.frames.get(timeout=PATIENCE)
         self.send("painted", frame=self.painted.get())
         return frame
 
@@ -167,8 +168,8 @@ def test_with_anywidget_the_widget_is_one(field: surfcast.Model, monkeypatch: py
     shown = widget._repr_mimebundle_()
     assert shown["application/vnd.jupyter.widget-view+json"]["esm"] == notebook.module_text()
     AnyWidget.handler(None, {"kind": "open"}, [])  # type: ignore[attr-defined]
-    assert sent.get(timeout=60)[0] == {"kind": "size", "width": 96, "height": 64}
-    message, buffers = sent.get(timeout=60)
+    assert sent.get(timeout=PATIENCE)[0] == {"kind": "size", "width": 96, "height": 64}
+    message, buffers = sent.get(timeout=PATIENCE)
     assert message["kind"] == "frame" and len(buffers[0]) > 100
     widget.close()
 

@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from patience import PATIENCE
 
 import surfcast
 from surfcast import aio
@@ -22,10 +23,10 @@ def moved(camera: surfcast.Camera, x: float) -> surfcast.Camera:
 
 def test_a_view_at_rest_is_the_picture(field: surfcast.Model, camera: surfcast.Camera) -> None:
     with field.view(camera, resolution=SIZE, color_by="intensity") as view:
-        frame = view.wait_converged(timeout=60)
+        frame = view.wait_converged(timeout=PATIENCE)
         assert frame.picture.data == field.render(camera, resolution=SIZE, color_by="intensity").data
         view.camera = moved(camera, 3)
-        frame = view.wait_converged(timeout=60)
+        frame = view.wait_converged(timeout=PATIENCE)
         assert frame.update == 1
         assert frame.picture.data == field.render(view.camera, resolution=SIZE, color_by="intensity").data
 
@@ -38,7 +39,7 @@ def test_a_view_at_rest_shows_the_file_that_replaces_its_model(
     os.utime(tmp_path / "field.surf", (1e9, 1e9))
     with server(tmp_path, arguments=["--model-refresh", "0.1"]) as started, started.connect() as connected:
         with connected["field"].view(camera, resolution=SIZE) as view:
-            before = view.wait_converged(timeout=60)
+            before = view.wait_converged(timeout=PATIENCE)
             (tmp_path / "later.surf.part").rename(tmp_path / "field.surf")
             after = next(frame for frame in view if frame.picture.converged and frame.number > before.number)
             assert after.update == before.update
@@ -63,7 +64,7 @@ def test_the_newest_frame_wins(field: surfcast.Model, camera: surfcast.Camera) -
 
 def test_frames_have_the_depth_of_what_is_picked(field: surfcast.Model, camera: surfcast.Camera) -> None:
     with field.view(camera, resolution=SIZE, depth=True) as view:
-        frame = view.wait_converged(timeout=60)
+        frame = view.wait_converged(timeout=PATIENCE)
         assert frame.picture.data == field.render(camera, resolution=SIZE).data
         assert frame.depth is not None
         rows, columns = frame.depth.inverse.shape
@@ -77,14 +78,14 @@ def test_frames_have_the_depth_of_what_is_picked(field: surfcast.Model, camera: 
 
 def test_frames_have_no_depth_unless_it_is_asked_for(field: surfcast.Model, camera: surfcast.Camera) -> None:
     with field.view(camera, resolution=SIZE) as view:
-        assert view.wait_converged(timeout=60).depth is None
+        assert view.wait_converged(timeout=PATIENCE).depth is None
 
 
 def test_frames_in_motion_are_marked(field: surfcast.Model, camera: surfcast.Camera) -> None:
     with field.view(camera, resolution=SIZE) as view:
-        rest = view.wait_converged(timeout=60)
+        rest = view.wait_converged(timeout=PATIENCE)
         view.update(moved(camera, 1), moving=True)
-        frame = view.next(after=rest, timeout=60)
+        frame = view.next(after=rest, timeout=PATIENCE)
         assert frame.moving
         assert frame.resolution == SIZE
 
@@ -93,11 +94,11 @@ async def test_a_view_waits_for_frames_to_be_painted(running: RunningServer, cam
     async with aio.connect(running.address) as client:
         field = await client.model("field")
         async with field.view(camera, resolution=SIZE, acknowledge=False) as view:
-            frame = await view.next(timeout=60)
+            frame = await view.next(timeout=PATIENCE)
             seen = 1
             while not frame.picture.converged:
                 await view.painted(frame)
-                frame = await view.next(after=frame, timeout=60)
+                frame = await view.next(after=frame, timeout=PATIENCE)
                 seen += 1
             assert frame.picture.data == (await field.render(camera, resolution=SIZE)).data
 

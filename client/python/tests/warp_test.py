@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 import pytest
+from patience import PATIENCE
 from PIL import Image
 
 import surfcast
@@ -256,7 +257,7 @@ def test_a_frame_of_a_server_is_nearer_to_the_truth_than_as_it_is(
 ) -> None:
     size = (160, 120)
     with field.view(camera, resolution=size, depth=True) as view:
-        frame = view.wait_converged(timeout=60)
+        frame = view.wait_converged(timeout=PATIENCE)
     now = frame.picture.camera
     moved = dataclasses.replace(now, position=(now.position[0] + 2, now.position[1] + 1, now.position[2]))
     truth = field.render(moved, resolution=size).array.astype(np.float64)
