@@ -33,9 +33,9 @@ layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_
 layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer normals;
 #endif
 
-// A splat is small if its ellipse hardly changes over its own extent. The exact variance in a pixel differs from that
-// at the centre, relatively, by the angle of the kernel. The gain differs by the angle of the splat, because a pixel of
-// a wide and coarse picture covers a large part of it.
+// A splat is small if its ellipse hardly changes over its own extent. The exact variance in a pixel and that at the
+// centre differ by about the angle of the kernel, as a share of them. The gain differs by the angle of the splat: a
+// pixel of a wide and coarse picture covers a large part of it.
 const float kSmallExtent = 24.0;      // pixels
 const float kSmallAngle = 0.25;       // tangent
 const float kSmallDeviation = 0.005;  // of the kernel, as a tangent

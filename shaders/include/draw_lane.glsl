@@ -76,25 +76,28 @@ void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
   }
 }
 
+// True for pixels in which the surface of this number can be visible.
+BoolRows is_open(Light light, int layer) { return less(Rows(opaque_before(layer)), light.transmittance); }
+
 // Where the surface of a column is looked for from: infinitely far.
 Rows surface_at_first(Light light, int layer) {
-  return mix(Rows(0.0), Rows(kHidesAll), at_most(light.transmittance, Rows(opaque_before(layer))));
+  return mix(Rows(kHidesAll), Rows(0.0), is_open(light, layer));
 }
 
 // Blends the surface of this number behind those drawn so far. False if no surface behind it can be visible.
 bool composite_columns(inout LightColumns light, ColumnSums sums, int layer, Columns before, Columns surface, float one,
                        vec2 pixel) {
-  Rows least = Rows(opaque_before(layer + 1));
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
 #ifdef SURFCAST_KEEPS_DEPTHS
-    BoolRows open = less(Rows(opaque_before(layer)), light[c].transmittance);
+    BoolRows was_open = is_open(light[c], layer);
 #endif
     composite(light[c], sums[c], before[c], surface[c], one, column(pixel, c), c);
+    BoolRows open = is_open(light[c], layer + 1);
 #ifdef SURFCAST_KEEPS_DEPTHS
-    opaque[c] = mix(opaque[c], surface[c], both(open, at_most(light[c].transmittance, least)));
+    opaque[c] = mix(opaque[c], mix(surface[c], opaque[c], open), was_open);
 #endif
-    more = more || any_of(both(less(Rows(0.0), surface[c]), less(least, light[c].transmittance)));
+    more = more || any_of(both(less(Rows(0.0), surface[c]), open));
   }
   keep_layers(pixel);
   return more;
@@ -149,7 +152,7 @@ bool draw_behind(TileLists tile, int layer, vec2 pixel, inout Columns limit, ino
   ColumnSums sums;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     // Nothing is behind the last surface of a pixel that is finished.
-    limit[c] = mix(Rows(0.0), limit[c], less(Rows(opaque_before(layer)), light[c].transmittance));
+    limit[c] = mix(Rows(0.0), limit[c], is_open(light[c], layer));
     surface[c] = surface_at_first(light[c], layer);
     sums[c] = sums_zero();
   }

@@ -33,10 +33,11 @@ float largest_of(Rows a) { return max(max(a.x, a.y), max(a.z, a.w)); }
 
 // Rows that need the surface of this number.
 BoolRows unfinished_rows(Light light, Rows limit, int layer) {
-  return both(less(Rows(0.0), limit), less(Rows(opaque_before(layer)), light.transmittance));
+  return both(less(Rows(0.0), limit), is_open(light, layer));
 }
 
-// What may belong to the pixels that are not finished: everything between `limit` and `surface` (inverse depths).
+// What may belong to the pixels that are not finished: everything between `limit` and `surface` (inverse depths). Marks
+// may be kept from surface to surface, and no pixel needs more than it did before the first one.
 Wanted wanted_between(LightColumns light, Columns limit, Columns surface) {
   uint pixels = 0u;
   Rows nearest = Rows(0.0);
