@@ -186,7 +186,7 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
 #ifdef SURFCAST_TRANSPARENT
   float push = surface_depth(s.n, ray, s.radius) * footprints;
 #else
-  float push = push_back(s.radius, s.o.z) * footprints;
+  float push = push_back_widened(s.radius, s.o.z, length(splat.slope)) * footprints;
 #endif
   float rise = depth_range / (1.0 - depth_range / eta());
   Disc disc = Disc(inverse_factor(d.s, d.det), push / (1.0 + push / eta()), splat.fall, rise, splat.weight);

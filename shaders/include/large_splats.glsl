@@ -34,7 +34,8 @@ float large_fragment_inverse_depth(LargeSplat s, vec2 ray) {
 float large_disc_inverse_depth(LargeSplat s, vec2 ray) {
   float plane = large_plane_inverse_depth(s, ray);
   if (reaches_eye_plane(s)) return 1.0 / (1.0 / plane + push_back(s.radius, s.o.z));
-  return min(plane, 1.0 / (s.o.z - depth_range(s))) / (1.0 + push_back(s.radius, s.o.z) / s.o.z);
+  float slope = length(s.n.xy) * s.o.z / -min(dot(s.n, s.o), -1e-30);
+  return min(plane, 1.0 / (s.o.z - depth_range(s))) / (1.0 + push_back_widened(s.radius, s.o.z, slope) / s.o.z);
 }
 
 // Squared radius of a pixel in the filter of a kernel with this deviation (world units), and the gain.

@@ -103,6 +103,12 @@ float push_back(float radius, float depth) {
   return float(SURFCAST_VISIBILITY_DEPTH) * radius + float(SURFCAST_VISIBILITY_FOOTPRINT) * max(depth, 0.0) / eta();
 }
 
+// The same for a disc that is widened on the screen. `slope`: of its plane, footprints of depth a pixel.
+float push_back_widened(float radius, float depth, float slope) {
+  float counted = min(slope, float(SURFCAST_VISIBILITY_SLOPE));
+  return push_back(radius, depth) + float(SURFCAST_VISIBILITY_PIXELS) * counted * depth / eta();
+}
+
 // Factors (l11, l21, l22) of v^T S^-1 v = (l11 v.x + l21 v.y)^2 + (l22 v.y)^2. Half precision suffices for the factors,
 // but not for the elements of S^-1, which cancel for thin ellipses.
 vec3 inverse_factor(vec3 s, float det) {

@@ -31,10 +31,12 @@
 // The opaque disc of a surfel. RADIUS is its radius on the surface in units of r. It is widened by a Gaussian of PIXELS
 // pixels on the screen, so that discs smaller than a pixel still cover its centre. It is pushed back along the ray by
 // DEPTH times r plus FOOTPRINT pixel footprints (o.z / eta): surfaces closer to each other than a pixel's footprint
-// count as one, however fine their surfels are.
+// count as one, however fine their surfels are. It is also pushed back by as much as the depth of its plane changes
+// over PIXELS pixels, for a slope of up to SLOPE footprints a pixel: the pixels that it was widened by have that depth.
 #define SURFCAST_VISIBILITY_RADIUS 1.0
 #define SURFCAST_VISIBILITY_PIXELS 0.6
 #define SURFCAST_VISIBILITY_DEPTH 1.0
+#define SURFCAST_VISIBILITY_SLOPE 16.0
 
 // In models of meshes alone, a surface that begins within so many pixel footprints behind another one meets it at an
 // edge: their coverages of a pixel add up. Of a face that is seen at 82 degrees a pixel holds 8 footprints of depth.

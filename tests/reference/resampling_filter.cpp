@@ -35,6 +35,10 @@ std::optional<Splat> Splat::make(const glm::dvec3& o, const glm::dvec3& n, doubl
   splat.depth_range_ = splat.extent_ * std::sqrt(std::max(0.0, 1 - splat.n_.z * splat.n_.z));
   if (o.z + splat.depth_range_ <= 0) return std::nullopt;
   splat.reaches_eye_plane_ = o.z <= 1.5 * splat.extent_;
+  if (!splat.reaches_eye_plane_) {
+    const double slope = std::hypot(splat.n_.x, splat.n_.y) * o.z / std::abs(glm::dot(splat.n_, o));
+    splat.push_ += kernel.visibility_pixels * std::min(slope, kernel.visibility_slope) * o.z / eta;
+  }
   const double gain = splat.reaches_eye_plane_ ? 1 : splat.fragment(o / o.z).gain;
   splat.cutoff_ = glm::mix(kernel.cutoff_minified, kernel.cutoff_magnified, gain);
   const bool one_cutoff = kernel.cutoff_minified == kernel.cutoff_magnified;

@@ -19,6 +19,7 @@ struct KernelParameters {
   double visibility_pixels = SURFCAST_VISIBILITY_PIXELS;
   double visibility_depth = SURFCAST_VISIBILITY_DEPTH;
   double visibility_footprint = SURFCAST_VISIBILITY_FOOTPRINT;
+  double visibility_slope = SURFCAST_VISIBILITY_SLOPE;
   double coverage_minified = SURFCAST_COVERAGE_MINIFIED;
   double coverage_magnified = SURFCAST_COVERAGE_MAGNIFIED;
   double scatter_minified = SURFCAST_SCATTER_MINIFIED;

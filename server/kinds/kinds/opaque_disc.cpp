@@ -96,7 +96,10 @@ std::optional<DiscHit> hit_disc(const glm::dvec3& o, const glm::dvec3& n, double
   if (!(form <= 1)) return std::nullopt;
   const double range = extent * std::sqrt(std::max(0.0, 1 - n.z * n.z));
   const double depth = std::min(plane, o.z + range);
-  return DiscHit{form, depth, std::max(plane, o.z - range) * (1 + push / o.z), std::max(depth, o.z - range)};
+  // Footprints of depth a pixel.
+  const double slope = std::min(std::hypot(n.x, n.y) * o.z / std::abs(glm::dot(n, o)), SURFCAST_VISIBILITY_SLOPE);
+  const double occluder = std::max(plane, o.z - range) * (1 + push / o.z + SURFCAST_VISIBILITY_PIXELS * slope / eta);
+  return DiscHit{form, depth, occluder, std::max(depth, o.z - range)};
 }
 
 std::optional<DiscHit> hit_surface(const surfel::OsculatingSurface& surface, double radius,
