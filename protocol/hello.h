@@ -16,7 +16,7 @@ namespace surfcast::protocol {
 /// Version of the framed protocol. Peers with the same major version are compatible.
 struct ProtocolVersion {
   uint16_t major = 1;
-  uint16_t minor = 10;
+  uint16_t minor = 11;
   bool operator==(const ProtocolVersion&) const = default;
 };
 

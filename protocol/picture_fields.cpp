@@ -176,9 +176,14 @@ constexpr std::array kFields{
                  "choose the spacing by error: the PSNR against the finest level, in place of --spacing",
                  number<&Picture::error, &Picture::set_error, &Plain::error>({.above = true, .unit = "dB"}, {"error"})},
     PictureField{"time", "time", "MS",
-                 "choose the spacing by time: milliseconds to draw and encode, in place of --spacing",
+                 "choose spacing and render scale by time: milliseconds to draw and encode, in place of --spacing",
                  number<&Picture::time_ms, &Picture::set_time_ms, &Plain::time_ms>(
                      {.above = true, .unit = "milliseconds"}, {"time_ms"})},
+    PictureField{
+        "render_scale", "render-scale", "SHARE",
+        "share of its sides at which the picture is drawn before it is enlarged, at most 1 (default 1)",
+        number<&Picture::render_scale, &Picture::set_render_scale, &Plain::render_scale, &Picture::has_render_scale>(
+            {.most = 1, .above = true}, {"render_scale"})},
     PictureField{"shading", "shading", "auto|unlit|lit", "lighting of the surfels (default auto)",
                  choice<&Picture::shading, &Picture::set_shading, &Plain::shading>({"shading", "auto"})},
     PictureField{"splat_convention", "splat-convention", "trained|exact",

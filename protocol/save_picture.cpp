@@ -80,6 +80,7 @@ std::string picture_stats_json(const wire::Picture& picture) {
                    {"camera", to_json(picture.camera())},
                    {"normalization", picture.normalization() == wire::NORMALIZATION_SURFEL ? "surfel" : "pixel"},
                    {"spacing", picture.spacing()},
+                   {"render_scale", picture.render_scale()},
                    {"converged", picture.converged()},
                    {"surfels_drawn", picture.surfels_drawn()},
                    {"blocks_drawn", picture.blocks_drawn()},

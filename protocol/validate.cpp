@@ -48,7 +48,9 @@ Status check_channels(const wire::DrawPicture& picture) {
 /// The spacing is stated, or chosen for an error or a time.
 Status check_spacing(const wire::DrawPicture& picture) {
   const int stated = int{picture.spacing() > 0} + int{picture.error() > 0} + int{picture.time_ms() > 0};
-  return stated > 1 ? invalid("spacing, error, time: at most one may be stated") : Status();
+  if (stated > 1) return invalid("spacing, error, time: at most one may be stated");
+  const bool chosen = picture.error() > 0 || picture.time_ms() > 0;
+  return chosen && picture.has_render_scale() ? invalid("render_scale: not with error or time") : Status();
 }
 
 Status check_numbers(const wire::DrawPicture& picture) {

@@ -336,7 +336,7 @@ TEST_F(FramedSessionTest, ClientsOfAnotherMajorVersionAreToldWhy) {
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->status, protocol::HelloStatus::kVersionRefused);
   EXPECT_NE(refusal->message.find("0.9"), std::string::npos);
-  EXPECT_NE(refusal->message.find(" 1.10"), std::string::npos);
+  EXPECT_NE(refusal->message.find(" 1.11"), std::string::npos);
 }
 
 TEST_F(FramedSessionTest, AClientOfALaterMinorVersionIsWelcome) {

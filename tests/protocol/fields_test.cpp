@@ -396,6 +396,8 @@ TEST(PictureFields, WrongTextsAreExplained) {
                                                                                    {"time", "0"},
                                                                                    {"time", "-1"},
                                                                                    {"time", "inf"},
+                                                                                   {"render_scale", "0"},
+                                                                                   {"render_scale", "1.1"},
                                                                                    {"shading", ""},
                                                                                    {"background", "256,0,0"},
                                                                                    {"background", "-1,0,0"},
@@ -574,6 +576,12 @@ TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
     p.set_error(40);
     p.set_spacing(1);
   })) << "nor with a spacing";
+  EXPECT_FALSE(refused([](auto& p) { p.set_render_scale(0.5); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_render_scale(0); }));
+  EXPECT_TRUE(refused([](auto& p) {
+    p.set_render_scale(0.5);
+    p.set_time_ms(200);
+  })) << "it is chosen with the time";
   EXPECT_TRUE(refused([&](auto& p) { p.set_error(nan); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_error(INFINITY); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_error(-1); }));

@@ -206,5 +206,28 @@ TEST(DrawToTime, ReturnsThePictureOfTheTimeAndNothingElse) {
   EXPECT_TRUE(std::isinf(finest->expected_error));
 }
 
+TEST(DrawToTime, WhereNoSpacingIsFastEnoughThePictureIsDrawnSmaller) {
+  picture::PictureRequest request = request_of(0);
+  request.time_ms = 100;
+  std::optional<SpacingTime> known;
+  const auto draw = [](const picture::PictureRequest& whole) {
+    picture::Frame frame;
+    frame.spacing = whole.spacing;
+    frame.render_scale = whole.render_scale;
+    frame.stats.stages = {{"splat", 30 + std::pow(whole.render_scale, 2) * (400 + 300 / std::pow(whole.spacing, 2))}};
+    return Result<picture::Frame>(std::move(frame));
+  };
+  const Result<picture::Frame> frame = draw_to_time(request, draw, known);
+  ASSERT_TRUE(frame);
+  EXPECT_NEAR(frame->expected_ms, 100, 25);
+  EXPECT_LT(frame->render_scale, 0.5);
+  EXPECT_GT(frame->spacing, 0);
+  request.time_ms = 0;
+  request.spacing = frame->spacing;
+  request.render_scale = frame->render_scale;
+  const Result<picture::Frame> stated = draw(request);
+  EXPECT_EQ(drawing_ms(*stated), frame->expected_ms) << "what is stated is what was drawn";
+}
+
 }  // namespace
 }  // namespace surfcast::render

@@ -127,6 +127,19 @@ TEST_F(ErrorGLTest, WithTimeForItTheFinestLevelIsDrawn) {
   EXPECT_EQ(frame.image.pixels, draw(model, request()).image.pixels);
 }
 
+TEST_F(ErrorGLTest, APictureOfASmallerRenderScaleShowsTheSame) {
+  const testing::ModelPointer& model = waves();
+  picture::PictureRequest half = request();
+  const picture::Image whole = draw(model, half).image;
+  half.render_scale = 0.5;
+  const picture::Frame frame = draw(model, half);
+  EXPECT_EQ(frame.render_scale, 0.5);
+  EXPECT_EQ(frame.image.width, whole.width);
+  EXPECT_EQ(frame.image.height, whole.height);
+  EXPECT_GT(psnr(frame.image, whole), 20);
+  EXPECT_EQ(frame.image.pixels, draw(model, half).image.pixels);
+}
+
 TEST_F(ErrorGLTest, PicturesThatDoNotWaitAreNotSearched) {
   const testing::ModelPointer& model = waves();
   draw(model, request());

@@ -45,6 +45,7 @@ class Picture:
     converged: bool
     preview: bool
     spacing: float
+    render_scale: float
     surfels_drawn: int
     blocks_drawn: int
     blocks_selected: int
@@ -128,6 +129,7 @@ def picture_from(picture: wire.Picture) -> Picture:
         converged=picture.converged,
         preview=picture.preview,
         spacing=picture.spacing,
+        render_scale=picture.render_scale,
         surfels_drawn=picture.surfels_drawn,
         blocks_drawn=picture.blocks_drawn,
         blocks_selected=picture.blocks_selected,

@@ -98,6 +98,10 @@ def test_a_spacing_is_chosen_for_an_error_or_a_time(running: RunningServer, fiel
     assert plenty.spacing == 0 and plenty.expected_error == float("inf")
     assert plenty.data == field.render(resolution=SIZE).data == over_http(running, "field", {"time": "1e7"})
     assert field.render(resolution=SIZE).expected_ms == 0
+    quick = field.render(resolution=SIZE, time=1e-3)
+    assert 0 < quick.render_scale < 1
+    stated = field.render(resolution=SIZE, spacing=quick.spacing, render_scale=quick.render_scale)
+    assert quick.data == stated.data and stated.render_scale == quick.render_scale
     with pytest.raises(surfcast.InvalidInput, match="at most one"):
         field.render(resolution=SIZE, error=35, time=100)
     with pytest.raises(surfcast.InvalidInput, match="error"):

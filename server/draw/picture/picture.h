@@ -137,6 +137,7 @@ struct Frame {
   bool nothing_pending = false;  ///< no missing block is about to arrive: redrawing would not improve the frame
   uint64_t cut = 0;              ///< identifies the set of blocks drawn
   double spacing = 0;            ///< of the picture, see PictureRequest::spacing
+  double render_scale = 1;       ///< likewise
   double expected_error = 0;     ///< with PictureRequest::error or time_ms: the PSNR expected, dB; 0: not known
   double expected_ms = 0;        ///< likewise: the time of drawing, milliseconds
   bool preview = false;          ///< of a scan whose model is still being built

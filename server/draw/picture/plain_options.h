@@ -29,7 +29,8 @@ struct PlainOptions {
   /// PSNR, dB, of the 8 bit picture against the one of spacing 0, over the pixels that either covers: the spacing is
   /// chosen for it. 0: not stated. Only with kWait.
   double error = 0;
-  double time_ms = 0;               ///< likewise: the time of drawing and encoding
+  double time_ms = 0;               ///< likewise: the time of drawing and encoding; the render scale is chosen with it
+  double render_scale = 1;          ///< the picture is drawn at this share of its sides (render/enlarge.h)
   glm::u8vec3 background{0, 0, 0};  ///< sRGB
   /// From 0 to 1. A factor of the opacities of surfels, transfer functions, iso-surfaces, slices, Gaussians and
   /// ellipsoids.
@@ -41,9 +42,10 @@ struct PlainOptions {
 /// Calls `use` with all members. A structured binding does not compile any more once there is another member.
 template <typename Options, typename Use>
 void with_members(Options& options, Use&& use) {
-  auto& [normalization, filter, shading, splat_convention, spacing, error, time_ms, background, opacity, ghost, xray] =
-      options;
-  use(normalization, filter, shading, splat_convention, spacing, error, time_ms, background, opacity, ghost, xray);
+  auto& [normalization, filter, shading, splat_convention, spacing, error, time_ms, render_scale, background, opacity,
+         ghost, xray] = options;
+  use(normalization, filter, shading, splat_convention, spacing, error, time_ms, render_scale, background, opacity,
+      ghost, xray);
 }
 
 }  // namespace surfcast::picture

@@ -7,6 +7,7 @@
 #include "base/result.h"
 #include "picture/picture.h"
 #include "render/region.h"
+#include "render/scale_search.h"
 #include "render/spacing_search.h"
 #include "render/time_search.h"
 
@@ -37,9 +38,9 @@ Result<picture::Frame> draw_to_error(const picture::PictureRequest& request, con
 using DrawPicture = std::function<Result<picture::Frame>(const picture::PictureRequest&)>;
 
 /// Draws the picture of the finest spacing that is drawn in PictureRequest::time_ms: at several spacings, and returns
-/// the best. The frame has its time as the expected one; its stage "search" is the time of the others. Loading blocks
-/// does not count. `known`: a picture of the model from which the search begins; is replaced by what was found. Fails
-/// where a drawing fails.
+/// the best. Where none is fast enough, it is the largest render scale of the fastest spacing. The frame has its time
+/// as the expected one; its stage "search" is the time of the others. Loading blocks does not count. `known`: a picture
+/// of the model from which the search begins; is replaced by what was found. Fails where a drawing fails.
 Result<picture::Frame> draw_to_time(const picture::PictureRequest& request, const DrawPicture& draw,
                                     std::optional<SpacingTime>& known);
 

@@ -11,12 +11,14 @@
 #include "base/contract.h"
 #include "base/hash.h"
 #include "base/host_memory.h"
+#include "base/stopwatch.h"
 #include "gl/device_status.h"
 #include "gl/egl_context.h"
 #include "model/hidden_members.h"
 #include "render/clear_blocks.h"
 #include "render/compose_region.h"
 #include "render/draw_to_goal.h"
+#include "render/enlarge.h"
 #include "render/glyph_plan.h"
 #include "render/programs.h"
 #include "render/scene.h"
@@ -196,6 +198,8 @@ struct Renderer::State {
   const ConstantTexels* colors_of(const DisplayOptions& display);
   [[nodiscard]] picture::FrameStats stats_of(const Scene& scene, const residency::PreparedView& view,
                                              const RegionStats& drawn) const;
+  Result<picture::Frame> draw_whole(const std::shared_ptr<const model::ModelFile>& model,
+                                    const picture::PictureRequest& request, const Preemption& preemption);
   Result<picture::Frame> draw_part(const std::shared_ptr<const model::ModelFile>& model,
                                    const picture::PictureRequest& request, const std::optional<Region>& window,
                                    const Preemption& preemption);
@@ -480,16 +484,37 @@ Result<picture::Frame> Renderer::State::draw_part(const std::shared_ptr<const mo
   return result;
 }
 
+/// Draws a whole picture at its render scale.
+Result<picture::Frame> Renderer::State::draw_whole(const std::shared_ptr<const model::ModelFile>& model,
+                                                   const picture::PictureRequest& request,
+                                                   const Preemption& preemption) {
+  if (request.render_scale == 1) return draw_part(model, request, {}, preemption);
+  const picture::PictureRequest smaller = at_render_scale(request);
+  Result<picture::Frame> frame = draw_part(model, smaller, {}, preemption);
+  if (!frame) return frame;
+  const Stopwatch watch;
+  frame->image = enlarge(frame->image, request.width, request.height);
+  if (frame->depth.cell > 0) {
+    picture::DepthMap map = picture::empty_depth_map(request.width, request.height, request.depth_texels);
+    enlarge_depth(frame->depth, {smaller.width, smaller.height}, {request.width, request.height}, map);
+    frame->depth = std::move(map);
+  }
+  frame->spacing = request.spacing;
+  frame->render_scale = request.render_scale;
+  frame->stats.stages.push_back({"enlarge", watch.milliseconds()});
+  return frame;
+}
+
 Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::ModelFile>& model,
                                              const picture::PictureRequest& request, const Preemption& preemption) {
   if (!picture::has_budget(request) || request.loading == picture::Loading::kNow) {
-    return draw_part(model, request, {}, preemption);
+    return draw_whole(model, request, preemption);
   }
   if (request.time_ms > 0) {
-    const auto draw_whole = [&](const picture::PictureRequest& whole) {
-      return draw_part(model, whole, {}, preemption);
+    const auto draw_whole_picture = [&](const picture::PictureRequest& whole) {
+      return draw_whole(model, whole, preemption);
     };
-    return draw_to_time(request, draw_whole, searched[model->id()].time);
+    return draw_to_time(request, draw_whole_picture, searched[model->id()].time);
   }
   const auto draw_window = [&](const picture::PictureRequest& part, const std::optional<Region>& window) {
     return draw_part(model, part, window, preemption);

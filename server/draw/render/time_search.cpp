@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "base/contract.h"
+#include "render/time_goal.h"
 
 namespace surfcast::render {
 namespace {
 
-constexpr double kAim = 0.93;       // of the time: some of it is left for what varies
-constexpr double kShort = 0.82;     // of the time: a picture that takes as long is not improved
-constexpr double kOver = 1.1;       // of the time: fits
 constexpr double kFirst = 4;        // pixels: about the fastest pictures
 constexpr double kFinestTry = 0.1;  // pixels: a finer spacing is the finest level
 constexpr double kCoarsestTry = 8;  // pixels: coarser pictures are not faster
@@ -24,7 +22,8 @@ double surfels_at(double spacing) {
 
 double first_spacing_for(const std::optional<SpacingTime>& known, double milliseconds) {
   if (!known) return kFirst;
-  return std::clamp(known->spacing * std::sqrt(known->milliseconds / (kAim * milliseconds)), 2 * kFinestTry, kFirst);
+  return std::clamp(known->spacing * std::sqrt(known->milliseconds / (kAimedTime * milliseconds)), 2 * kFinestTry,
+                    kFirst);
 }
 
 TimeSearch::TimeSearch(double milliseconds) : asked_(milliseconds) {}
@@ -35,13 +34,13 @@ void TimeSearch::add(const SpacingTime& point) {
 }
 
 bool TimeSearch::fits(const SpacingTime& point) const {
-  return point.milliseconds <= kOver * asked_;
+  return point.milliseconds <= kLongTime * asked_;
 }
 
 SpacingTime TimeSearch::best() const {
   SURFCAST_EXPECTS(!points_.empty());
   const SpacingTime fastest = *std::ranges::min_element(points_, {}, &SpacingTime::milliseconds);
-  const double limit = kOver * std::max(asked_, fastest.milliseconds);
+  const double limit = kLongTime * std::max(asked_, fastest.milliseconds);
   return *std::ranges::find_if(points_, [&](const auto& point) { return point.milliseconds <= limit; });
 }
 
@@ -49,7 +48,7 @@ std::optional<double> TimeSearch::next() const {
   const SpacingTime found = best();
   if (points_.size() >= kMaxTries) return std::nullopt;
   if (!fits(found)) return towards_faster();
-  if (found.milliseconds >= kShort * asked_ || found.spacing == 0) return std::nullopt;
+  if (found.milliseconds >= kShortTime * asked_ || found.spacing == 0) return std::nullopt;
   const auto at = std::ranges::find(points_, found.spacing, &SpacingTime::spacing);
   return at == points_.begin() ? finer() : between(*std::prev(at), *at);
 }
@@ -89,7 +88,7 @@ std::optional<double> TimeSearch::between(const SpacingTime& fine, const Spacing
 double TimeSearch::solve(const SpacingTime& fine, const SpacingTime& coarse) const {
   const double slope =
       (fine.milliseconds - coarse.milliseconds) / (surfels_at(fine.spacing) - surfels_at(coarse.spacing));
-  const double surfels = surfels_at(coarse.spacing) + (kAim * asked_ - coarse.milliseconds) / slope;
+  const double surfels = surfels_at(coarse.spacing) + (kAimedTime * asked_ - coarse.milliseconds) / slope;
   return surfels > 0 ? 1 / std::sqrt(surfels) : 2 * coarse.spacing;
 }
 

@@ -89,6 +89,7 @@ void to_wire(service::EncodedPicture picture, wire::Picture& message) {
   message.set_normalization(picture.normalization == picture::Normalization::kSurfel ? wire::NORMALIZATION_SURFEL
                                                                                      : wire::NORMALIZATION_PIXEL);
   message.set_spacing(picture.spacing);
+  message.set_render_scale(picture.render_scale);
   message.set_expected_error(picture.expected_error);
   message.set_expected_ms(picture.expected_ms);
   message.set_converged(picture.converged && !picture.preview);

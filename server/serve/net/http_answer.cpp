@@ -264,6 +264,7 @@ HttpAnswer picture_answer(service::EncodedPicture picture) {
                     {"Cache-Control", "no-cache"}};
   if (picture.expected_ms > 0) {  // the spacing was chosen
     answer.headers.emplace_back("X-Surfcast-Spacing", fmt::format("{}", picture.spacing));
+    answer.headers.emplace_back("X-Surfcast-Render-Scale", fmt::format("{}", picture.render_scale));
     answer.headers.emplace_back("X-Surfcast-Expected-Error", fmt::format("{}", picture.expected_error));
     answer.headers.emplace_back("X-Surfcast-Expected-Ms", fmt::format("{}", picture.expected_ms));
   }

@@ -20,6 +20,7 @@ EncodedPicture describe(const RenderJob& job, const picture::Frame& frame) {
   picture.normalization = job.picture.request.normalization;
   const bool chosen = picture::has_budget(job.picture.request);
   picture.spacing = chosen ? frame.spacing : job.picture.request.spacing;
+  picture.render_scale = chosen ? frame.render_scale : job.picture.request.render_scale;
   picture.expected_error = frame.expected_error;
   picture.expected_ms = frame.expected_ms;
   picture.converged = frame.converged;

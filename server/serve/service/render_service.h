@@ -80,6 +80,7 @@ struct EncodedPicture {
   geometry::Camera camera;  ///< the one that was used
   picture::Normalization normalization = picture::Normalization::kPixel;
   double spacing = 0;            ///< as in PictureRequest, or the one that was chosen
+  double render_scale = 1;       ///< as in Frame
   double expected_error = 0;     ///< as in Frame
   double expected_ms = 0;        ///< as in Frame, with encoding
   bool converged = false;        ///< as in Frame

@@ -235,6 +235,7 @@ Result<double> RenderService::State::encoding_ms(FrameRenderer& renderer, const 
   const picture::FileFormat format = job.picture.format;
   if (const auto known = encode_times.expected_ms(format, pixels)) return *known;
   request.error = request.time_ms = 0;
+  request.render_scale = 1;
   request.depth_texels = 0;
   request.spacing = kCoarse;
   request.width = std::max(request.width / kSmaller, 1);

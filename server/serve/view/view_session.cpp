@@ -136,6 +136,7 @@ void ViewSession::make_motion_job(uint64_t frame, ViewTime now, service::Picture
   if (is_video_) job.video = {stream_, order};
   const MotionQuality quality = motion_quality(order.bytes);
   request.rest_spacing = request.spacing * quality.scale;
+  request.render_scale = 1;
   request.width = scaled(request.width, quality.scale);
   request.height = scaled(request.height, quality.scale);
   request.spacing = std::max(request.spacing * quality.scale, quality.spacing);

@@ -191,11 +191,11 @@ void fields(Archive& archive, T& value) {
 /// The pixels travel in shared memory.
 template <typename Archive, worker::Is<Frame> T>
 void fields(Archive& archive, T& value) {
-  auto& [image, camera, converged, nothing_pending, cut, spacing, expected_error, expected_ms, preview, depth, stats] =
-      value;
+  auto& [image, camera, converged, nothing_pending, cut, spacing, render_scale, expected_error, expected_ms, preview,
+         depth, stats] = value;
   auto& [width, height, format, pixels] = image;
   archive(width, height, format, camera, converged, nothing_pending, cut, preview, depth, stats);
-  archive(spacing, expected_error, expected_ms);
+  archive(spacing, render_scale, expected_error, expected_ms);
 }
 
 template <typename Archive, worker::Is<MemoryBudgets> T>
