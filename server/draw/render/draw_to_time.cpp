@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "render/draw_to_goal.h"
+#include "render/time_goal.h"
 
 namespace surfcast::render {
 namespace {
@@ -14,14 +15,13 @@ class TimeDrawing {
   }
 
   Result<picture::Frame> run() {
-    const Result<SpacingTime> spacing = choose_spacing();
-    if (!spacing) return fail(spacing);
-    if (spacing->milliseconds < 2 * asked_ms_ && spacing->spacing > 0) known_ = *spacing;
-    const Result<double> drawn_ms = choose_scale(*spacing);
-    if (!drawn_ms) return fail(drawn_ms);
-    best_.expected_ms = *drawn_ms;
+    Result<SpacingTime> found = choose_spacing(first_spacing_for(known_, asked_ms_));
+    if (found && found->spacing > 0 && found->milliseconds < 2 * asked_ms_) known_ = *found;
+    if (found && found->milliseconds > kLongTime * asked_ms_) found = draw_smaller(*found);
+    if (!found) return fail(found);
+    best_.expected_ms = found->milliseconds;
     if (best_.spacing == 0 && best_.render_scale == 1) best_.expected_error = std::numeric_limits<double>::infinity();
-    best_.stats.stages.push_back({"search", spent_ms_ - *drawn_ms});
+    best_.stats.stages.push_back({"search", spent_ms_ - found->milliseconds});
     return std::move(best_);
   }
 
@@ -32,9 +32,9 @@ class TimeDrawing {
     return frame;
   }
 
-  Result<SpacingTime> choose_spacing() {
+  Result<SpacingTime> choose_spacing(double first) {
     TimeSearch search(asked_ms_);
-    for (std::optional next(first_spacing_for(known_, asked_ms_)); next; next = search.next()) {
+    for (std::optional next(first); next; next = search.next()) {
       request_.spacing = *next;
       Result<picture::Frame> frame = draw();
       if (!frame) return fail(frame);
@@ -44,18 +44,21 @@ class TimeDrawing {
     return search.best();
   }
 
-  /// Draws smaller pictures if the one at its own size takes too long. Returns the time of the best, milliseconds.
-  Result<double> choose_scale(const SpacingTime& whole) {
+  /// Chooses a size, with about as many surfels for each pixel that is drawn, and then the spacing anew: the smaller
+  /// picture may leave time for more surfels. This twice, because the first picture of a size or a spacing takes longer
+  /// than the next one.
+  Result<SpacingTime> draw_smaller(const SpacingTime& whole) {
     ScaleSearch search(asked_ms_, whole.milliseconds);
     while (const std::optional<double> next = search.next()) {
       request_.render_scale = *next;
-      request_.spacing = whole.spacing / *next;  // about as many surfels for a pixel that is drawn
-      Result<picture::Frame> frame = draw();
+      request_.spacing = whole.spacing / *next;
+      const Result<picture::Frame> frame = draw();
       if (!frame) return fail(frame);
       search.add({*next, drawing_ms(*frame)});
-      if (search.best().scale == *next) best_ = std::move(*frame);
     }
-    return search.best().milliseconds;
+    request_.render_scale = search.best().scale;
+    const Result<SpacingTime> found = choose_spacing(whole.spacing / request_.render_scale);
+    return found ? choose_spacing(found->spacing) : found;
   }
 
   picture::PictureRequest request_;
