@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace surfcast::render {
@@ -63,25 +64,46 @@ Channel channel_of(float value, size_t c) {
   }
 }
 
+/// The drawn rows around an enlarged one, enlarged along themselves: no more than it needs.
+template <typename Channel>
+class RowWindow {
+ public:
+  RowWindow(const picture::Image& image, std::vector<Taps> taps) : image_(image), taps_(std::move(taps)) {
+    for (std::vector<float>& row : rows_) row.resize(kChannels * taps_.size());
+  }
+
+  /// Moves to the rows of these taps, which never go up.
+  void move_to(const Taps& down) {
+    const size_t pitch = kChannels * static_cast<size_t>(image_.width);
+    const auto* drawn = reinterpret_cast<const Channel*>(image_.pixels.data());
+    for (const int last = inside(down.first + kTaps - 1); next_ <= last; ++next_) {
+      enlarge_row(drawn + static_cast<size_t>(next_) * pitch, image_.width, taps_, place_of(next_).data());
+    }
+  }
+
+  /// A row of the window; beyond the picture that at its border.
+  [[nodiscard]] const float* row(int index) { return place_of(inside(index)).data(); }
+
+ private:
+  [[nodiscard]] int inside(int row) const { return std::clamp(row, 0, image_.height - 1); }
+  std::vector<float>& place_of(int row) { return rows_.at(static_cast<size_t>(row % kTaps)); }
+
+  const picture::Image& image_;
+  std::vector<Taps> taps_;
+  std::array<std::vector<float>, kTaps> rows_;
+  int next_ = 0;
+};
+
 template <typename Channel>
 void enlarge_channels(const picture::Image& image, picture::Image& result) {
   const double pitch = static_cast<double>(image.height) / result.height;
-  const std::vector<Taps> across = taps_of(result.width, image.width, pitch);
-  const std::vector<Taps> down = taps_of(result.height, image.height, pitch);
-  const size_t drawn_row = kChannels * static_cast<size_t>(image.width);
+  RowWindow<Channel> window(image, taps_of(result.width, image.width, pitch));
   const size_t row = kChannels * static_cast<size_t>(result.width);
-  const auto* drawn = reinterpret_cast<const Channel*>(image.pixels.data());
   auto* pixels = reinterpret_cast<Channel*>(result.pixels.data());
-  std::vector<float> wide(row * static_cast<size_t>(image.height));
-  for (size_t y = 0; y < static_cast<size_t>(image.height); ++y) {
-    enlarge_row(drawn + y * drawn_row, image.width, across, wide.data() + y * row);
-  }
-  for (const Taps& tap : down) {
+  for (const Taps& tap : taps_of(result.height, image.height, pitch)) {
+    window.move_to(tap);
     std::array<const float*, kTaps> rows{};
-    for (int k = 0; k < kTaps; ++k) {
-      rows[static_cast<size_t>(k)] =
-          wide.data() + row * static_cast<size_t>(std::clamp(tap.first + k, 0, image.height - 1));
-    }
+    for (int k = 0; k < kTaps; ++k) rows[static_cast<size_t>(k)] = window.row(tap.first + k);
     for (size_t i = 0; i < row; ++i) {
       float sum = 0;
       for (size_t k = 0; k < kTaps; ++k) sum += tap.weights[k] * rows[k][i];
@@ -103,7 +125,6 @@ picture::PictureRequest at_render_scale(const picture::PictureRequest& request) 
   drawn.width = std::max(1, static_cast<int>(std::ceil(scale * request.width - 1e-9)));
   drawn.spacing *= scale;
   drawn.eye_dome.radius *= scale;
-  if (drawn.rest_spacing) *drawn.rest_spacing *= scale;
   return drawn;
 }
 

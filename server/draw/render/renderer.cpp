@@ -511,10 +511,10 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
     return draw_whole(model, request, preemption);
   }
   if (request.time_ms > 0) {
-    const auto draw_whole_picture = [&](const picture::PictureRequest& whole) {
+    const auto draw_picture = [&](const picture::PictureRequest& whole) {
       return draw_whole(model, whole, preemption);
     };
-    return draw_to_time(request, draw_whole_picture, searched[model->id()].time);
+    return draw_to_time(request, draw_picture, searched[model->id()].time);
   }
   const auto draw_window = [&](const picture::PictureRequest& part, const std::optional<Region>& window) {
     return draw_part(model, part, window, preemption);
