@@ -140,6 +140,16 @@ TEST_F(ErrorGLTest, APictureOfASmallerRenderScaleShowsTheSame) {
   EXPECT_EQ(frame.image.pixels, draw(model, half).image.pixels);
 }
 
+TEST_F(ErrorGLTest, ARenderScaleDoesNotRaiseTheLimitOfTheResolution) {
+  picture::PictureRequest wide = request();
+  wide.width = renderer_->max_resolution() + 1;
+  wide.render_scale = 0.5;
+  const std::atomic<bool> cancelled{false};
+  const Result<picture::Frame> frame = renderer_->draw(waves(), wide, Preemption(cancelled));
+  ASSERT_FALSE(frame);
+  EXPECT_EQ(frame.error().kind, ErrorKind::kLimit);
+}
+
 TEST_F(ErrorGLTest, PicturesThatDoNotWaitAreNotSearched) {
   const testing::ModelPointer& model = waves();
   draw(model, request());

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/catmull_rom.h"
+
 namespace surfcast::render {
 namespace {
 
@@ -21,20 +23,16 @@ struct Taps {
   std::array<float, kTaps> weights{};
 };
 
-/// Keys 1981, equation 4, with a = -1/2. `t`: from the second neighbour towards the third, in [0, 1).
-std::array<float, kTaps> cubic_weights(double t) {
-  const auto weight = [](double value) { return static_cast<float>(value); };
-  return {weight(((-0.5 * t + 1) * t - 0.5) * t), weight((1.5 * t - 2.5) * t * t + 1),
-          weight(((-1.5 * t + 2) * t + 0.5) * t), weight((0.5 * t - 0.5) * t * t)};
-}
-
 /// `pitch`: drawn pixels of an enlarged one. The middles of both lengths meet.
 std::vector<Taps> taps_of(int enlarged, int drawn, double pitch) {
   std::vector<Taps> taps(static_cast<size_t>(enlarged));
   for (int i = 0; i < enlarged; ++i) {
     const double at = (i + 0.5 - 0.5 * enlarged) * pitch + 0.5 * drawn - 0.5;
     const double below = std::floor(at);
-    taps[static_cast<size_t>(i)] = {static_cast<int>(below) - 1, cubic_weights(at - below)};
+    Taps& tap = taps[static_cast<size_t>(i)];
+    tap.first = static_cast<int>(below) - 1;
+    std::ranges::transform(catmull_rom_weights(at - below), tap.weights.begin(),
+                           [](double weight) { return static_cast<float>(weight); });
   }
   return taps;
 }
@@ -121,8 +119,8 @@ picture::PictureRequest at_render_scale(const picture::PictureRequest& request) 
   drawn.silhouettes = false;
   drawn.blends_behind = true;
   drawn.height = std::max(1, static_cast<int>(std::lround(request.render_scale * request.height)));
+  drawn.width = (request.width * drawn.height + request.height - 1) / request.height;
   const double scale = static_cast<double>(drawn.height) / request.height;
-  drawn.width = std::max(1, static_cast<int>(std::ceil(scale * request.width - 1e-9)));
   drawn.spacing *= scale;
   drawn.eye_dome.radius *= scale;
   return drawn;

@@ -435,9 +435,6 @@ Result<RegionStats> Renderer::State::draw_survey(const Part& part, residency::Pr
 Result<picture::Frame> Renderer::State::draw_part(const std::shared_ptr<const model::ModelFile>& model,
                                                   const picture::PictureRequest& request,
                                                   const std::optional<Region>& window, const Preemption& preemption) {
-  if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
-    return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
-  }
   Result<DisplayOptions> display = resolve_display_options(model->info(), request);
   if (!display) return fail(display);
   if (display->volumes.points.empty() && !model->volumes().empty()) {
@@ -507,6 +504,9 @@ Result<picture::Frame> Renderer::State::draw_whole(const std::shared_ptr<const m
 
 Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::ModelFile>& model,
                                              const picture::PictureRequest& request, const Preemption& preemption) {
+  if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
+    return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
+  }
   if (!picture::has_budget(request) || request.loading == picture::Loading::kNow) {
     return draw_whole(model, request, preemption);
   }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/catmull_rom.h"
 #include "volume/packing.h"
 
 namespace surfcast::kinds {
@@ -18,11 +19,7 @@ constexpr int kParts = 4;          ///< of a stretch between two samples of the 
 constexpr double kStretch = 0.02;  ///< opacity of a stretch that becomes one hit
 constexpr int kHalvings = 40;      ///< in the search of a crossing
 
-/// Weights of Catmull and Rom for four samples, at the fraction x between the second and the third.
-std::array<double, 4> cubic(double x) {
-  return {((2 - x) * x - 1) * x / 2, ((3 * x - 5) * x * x + 2) / 2, ((4 - 3 * x) * x + 1) * x / 2, (x - 1) * x * x / 2};
-}
-
+/// Derivatives of catmull_rom_weights.
 std::array<double, 4> cubic_slope(double x) {
   return {((4 - 3 * x) * x - 1) / 2, (9 * x - 10) * x / 2, ((8 - 9 * x) * x + 1) / 2, (3 * x - 2) * x / 2};
 }
@@ -51,7 +48,7 @@ GridBlock::Field GridBlock::field_at(const glm::dvec3& index) const {
   std::array<std::array<double, 4>, 3> weights{};
   std::array<std::array<double, 4>, 3> slopes{};
   for (int axis = 0; axis < 3; ++axis) {
-    weights.at(axis) = cubic(at[axis] - cell[axis]);
+    weights.at(axis) = catmull_rom_weights(at[axis] - cell[axis]);
     slopes.at(axis) = cubic_slope(at[axis] - cell[axis]);
   }
   const auto& [wx, wy, wz] = weights;
