@@ -173,7 +173,7 @@ function(surfcast_join_sources target)
 endfunction()
 
 # Replaces the sources of TARGET by files that include up to SURFCAST_JOINED_SOURCES of them each.
-set(SURFCAST_JOINED_SOURCES 8)
+set(SURFCAST_JOINED_SOURCES 12)
 function(surfcast_join_sources_now target)
   get_target_property(sources ${target} SOURCES)
   set(joined)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/invalid_input.h"
 #include "base/mapped_file.h"
 #include "protocol/picture_fields.h"
 #include "protocol/request_flags.h"
@@ -94,10 +95,6 @@ Vector upright(const Vector& up, const Vector& view) {
   return length(part) > 1e-9 ? unit(part) : up;
 }
 
-tl::unexpected<Error> invalid(const std::string& what) {
-  return fail(ErrorKind::kInvalidInput, what);
-}
-
 Status check_camera(const wire::Camera& camera) {
   wire::DrawPicture picture;
   picture.set_model("any");
@@ -108,31 +105,31 @@ Status check_camera(const wire::Camera& camera) {
 Result<Keyframe> read_keyframe(json document, size_t number) {
   const std::string name = "keyframe " + std::to_string(number) + ": ";
   if (!document.is_object() || !document.contains("time") || !document["time"].is_number()) {
-    return invalid(name + "expected an object with a time");
+    return invalid_input(name + "expected an object with a time");
   }
   Keyframe keyframe;
   keyframe.time = document["time"].get<double>();
   document.erase("time");
-  if (!std::isfinite(keyframe.time)) return invalid(name + "the time must be finite");
+  if (!std::isfinite(keyframe.time)) return invalid_input(name + "the time must be finite");
   Status status = parse_camera_json(document.dump(), keyframe.camera);
   if (status) status = check_camera(keyframe.camera);
-  if (!status) return invalid(name + status.error().message);
+  if (!status) return invalid_input(name + status.error().message);
   return keyframe;
 }
 
 /// The camera of a saved view. Its display options and clip boxes are not of a path.
 Result<wire::Camera> camera_of_view(const json& view) {
   if (!view.is_object() || !view.contains("parameters") || !view["parameters"].is_object()) {
-    return invalid("expected an object with parameters");
+    return invalid_input("expected an object with parameters");
   }
   wire::DrawPicture picture;
   picture.mutable_camera()->set_view_angle(kDefaultViewAngle);
   for (const char* field : {"position", "focal_point", "view_up", "view_angle"}) {
     const auto found = view["parameters"].find(field);
     if (found == view["parameters"].end()) continue;
-    if (!found->is_string()) return invalid(std::string(field) + " must be a text");
+    if (!found->is_string()) return invalid_input(std::string(field) + " must be a text");
     if (Status status = set_picture_field(picture, field, found->get<std::string>()); !status) {
-      return invalid(std::string(field) + ": " + status.error().message);
+      return invalid_input(std::string(field) + ": " + status.error().message);
     }
   }
   if (Status status = check_camera(picture.camera()); !status) return fail(status);
@@ -141,19 +138,19 @@ Result<wire::Camera> camera_of_view(const json& view) {
 
 Result<Keyframe> keyframe_of_view(const json& view, size_t number, double seconds_per_view) {
   Result<wire::Camera> camera = camera_of_view(view);
-  if (!camera) return invalid("view " + std::to_string(number) + ": " + camera.error().message);
+  if (!camera) return invalid_input("view " + std::to_string(number) + ": " + camera.error().message);
   return Keyframe{static_cast<double>(number) * seconds_per_view, std::move(*camera)};
 }
 
 /// Keyframes must have the same fields and ascending times.
 Status check_order(const std::vector<Keyframe>& keyframes) {
-  if (keyframes.size() < 2) return invalid("a path needs two keyframes or views");
+  if (keyframes.size() < 2) return invalid_input("a path needs two keyframes or views");
   for (size_t i = 1; i < keyframes.size(); ++i) {
     const wire::Camera& first = keyframes[0].camera;
     const wire::Camera& camera = keyframes[i].camera;
-    if (!(keyframes[i - 1].time < keyframes[i].time)) return invalid("times of keyframes must ascend");
+    if (!(keyframes[i - 1].time < keyframes[i].time)) return invalid_input("times of keyframes must ascend");
     if (first.has_view_up() != camera.has_view_up() || first.has_view_angle() != camera.has_view_angle()) {
-      return invalid("view_up and view_angle must be in all keyframes or views, or in none");
+      return invalid_input("view_up and view_angle must be in all keyframes or views, or in none");
     }
   }
   return {};
@@ -168,7 +165,7 @@ Result<CameraPath> CameraPath::parse(std::string_view text, double seconds_per_v
   };
   const bool views = has_array("views");
   if (!views && !has_array("keyframes")) {
-    return invalid("not a camera path: expected an object with an array of keyframes, or of views");
+    return invalid_input("not a camera path: expected an object with an array of keyframes, or of views");
   }
   std::vector<Keyframe> keyframes;
   for (const json& entry : document[views ? "views" : "keyframes"]) {
@@ -243,7 +240,7 @@ Result<std::string> frame_name(std::string_view pattern, int number) {
     const bool padded = end == i + 1 || pattern[i + 1] == '0';
     if (end == pattern.size() || pattern[end] != 'd' || !padded || width > kWidest ||
         read.ec == std::errc::result_out_of_range) {
-      return invalid(std::string(pattern) + ": expected %d or %05d for the number of a frame");
+      return invalid_input(std::string(pattern) + ": expected %d or %05d for the number of a frame");
     }
     const std::string digits = std::to_string(number);
     name.append(static_cast<size_t>(std::max(0, width - static_cast<int>(digits.size()))), '0');
@@ -251,7 +248,7 @@ Result<std::string> frame_name(std::string_view pattern, int number) {
     ++numbers;
     i = end;
   }
-  if (numbers != 1) return invalid(std::string(pattern) + ": the names of frames need one %d or %05d");
+  if (numbers != 1) return invalid_input(std::string(pattern) + ": the names of frames need one %d or %05d");
   return name;
 }
 

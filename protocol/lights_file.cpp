@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/invalid_input.h"
 #include "base/mapped_file.h"
 
 namespace surfcast::protocol {
@@ -13,10 +14,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double kExponent = 32;
-
-tl::unexpected<Error> invalid(const std::string& what) {
-  return fail(ErrorKind::kInvalidInput, what);
-}
 
 /// The number of an object's field, at least 0; none if the field is something else.
 std::optional<double> number_in(const json& object, const char* name, double absent) {
@@ -40,10 +37,10 @@ bool read_direction(const json& object, wire::Vector3& direction) {
 
 Status read_light(const json& object, wire::Light& light) {
   if (!object.is_object() || !read_direction(object, *light.mutable_direction())) {
-    return invalid("a light needs a direction of three numbers that are not all 0");
+    return invalid_input("a light needs a direction of three numbers that are not all 0");
   }
   const std::optional<double> power = number_in(object, "power", 1);
-  if (!power) return invalid("power: expected a number of at least 0");
+  if (!power) return invalid_input("power: expected a number of at least 0");
   light.set_power(*power);
   return {};
 }
@@ -52,14 +49,14 @@ Status read_light(const json& object, wire::Light& light) {
 
 Status parse_lights_json(std::string_view text, wire::Lighting& lighting) {
   const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!document.is_object()) return invalid("not a JSON object");
+  if (!document.is_object()) return invalid_input("not a JSON object");
   const std::optional<double> ambient = number_in(document, "ambient", 0);
   const std::optional<double> specular = number_in(document, "specular", 0);
   const std::optional<double> exponent = number_in(document, "exponent", kExponent);
   if (!ambient || !specular || !exponent) {
-    return invalid("ambient, specular and exponent: expected numbers of at least 0");
+    return invalid_input("ambient, specular and exponent: expected numbers of at least 0");
   }
-  if (!document.contains("lights") || !document["lights"].is_array()) return invalid("expected a list of lights");
+  if (!document.contains("lights") || !document["lights"].is_array()) return invalid_input("expected a list of lights");
   wire::Lighting read;
   read.set_ambient(*ambient);
   read.set_specular(*specular);

@@ -20,4 +20,9 @@ std::optional<std::vector<uint32_t>> parse_unsigneds(std::string_view text, size
 /// The number of a name among those of "first|second|third".
 std::optional<int> parse_choice(std::string_view names, std::string_view text);
 
+/// Whether a number is an opacity, or another part of a whole.
+constexpr bool is_share(double value) {
+  return value >= 0 && value <= 1;
+}
+
 }  // namespace surfcast::protocol

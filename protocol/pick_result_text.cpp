@@ -7,16 +7,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const wire::Vector3& v) {
+Json coordinates_of(const wire::Vector3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
 Json document_of(const wire::PickResult& result) {
   Json document{{"hit", result.hit()}};
   if (!result.hit()) return document;
-  document["position"] = to_json(result.position());
-  if (result.has_source_position()) document["source_position"] = to_json(result.source_position());
-  if (result.has_normal()) document["normal"] = to_json(result.normal());
+  document["position"] = coordinates_of(result.position());
+  if (result.has_source_position()) document["source_position"] = coordinates_of(result.source_position());
+  if (result.has_normal()) document["normal"] = coordinates_of(result.normal());
   if (result.has_color()) document["color"] = {result.color().red(), result.color().green(), result.color().blue()};
   document["radius"] = result.radius();
   document["distance"] = result.distance();

@@ -21,7 +21,7 @@ struct Choice {
   Enum value;
 };
 
-constexpr std::array kFormats{
+constexpr std::array kFileFormats{
     Choice<wire::FileFormat>{"png", wire::FILE_FORMAT_PNG},   Choice<wire::FileFormat>{"jpg", wire::FILE_FORMAT_JPEG},
     Choice<wire::FileFormat>{"jpeg", wire::FILE_FORMAT_JPEG}, Choice<wire::FileFormat>{"webp", wire::FILE_FORMAT_WEBP},
     Choice<wire::FileFormat>{"exr", wire::FILE_FORMAT_EXR},
@@ -90,7 +90,7 @@ bool set_quality(wire::DrawPicture& picture, std::string_view text) {
 }
 
 bool set_format(wire::DrawPicture& picture, std::string_view text) {
-  const auto format = choose(kFormats, text);
+  const auto format = choose(kFileFormats, text);
   if (format) picture.set_format(*format);
   return format.has_value();
 }
@@ -310,7 +310,7 @@ Status set_pixel(wire::PickSurfel& pick, std::string_view text) {
 }
 
 Result<wire::FileFormat> parse_file_format(std::string_view text) {
-  if (const auto format = choose(kFormats, text)) return *format;
+  if (const auto format = choose(kFileFormats, text)) return *format;
   return fail(ErrorKind::kUnsupported, "'" + std::string(text) + "' is not a picture format: png, jpg, webp, exr");
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/ascii_text.h"
+#include "base/invalid_input.h"
 #include "protocol/parse.h"
 #include "protocol/url_query.h"
 #include "protocol/validate.h"
@@ -16,19 +17,16 @@
 namespace surfcast::protocol {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, wire::PointFormat>, 5> kFormats = {{{"las", wire::POINT_FORMAT_LAS},
-                                                                                     {"laz", wire::POINT_FORMAT_LAZ},
-                                                                                     {"ply", wire::POINT_FORMAT_PLY},
-                                                                                     {"csv", wire::POINT_FORMAT_CSV},
-                                                                                     {"npy", wire::POINT_FORMAT_NPY}}};
+constexpr std::array<std::pair<std::string_view, wire::PointFormat>, 5> kPointFormats = {
+    {{"las", wire::POINT_FORMAT_LAS},
+     {"laz", wire::POINT_FORMAT_LAZ},
+     {"ply", wire::POINT_FORMAT_PLY},
+     {"csv", wire::POINT_FORMAT_CSV},
+     {"npy", wire::POINT_FORMAT_NPY}}};
 
 tl::unexpected<Error> not_of_form(std::string_view name, std::string_view form, std::string_view text) {
   return fail(ErrorKind::kInvalidInput,
               std::string(name) + ": expected " + std::string(form) + ", got '" + std::string(text) + "'");
-}
-
-tl::unexpected<Error> invalid(std::string message) {
-  return fail(ErrorKind::kInvalidInput, std::move(message));
 }
 
 /// Numbers between commas; none if one of them is no number.
@@ -103,23 +101,23 @@ bool is_finite(const wire::Vector3& v) {
 }
 
 Status check_region_box(const wire::Box& box) {
-  if (!is_finite(box.min()) || !is_finite(box.max())) return invalid("box: coordinates must be finite numbers");
+  if (!is_finite(box.min()) || !is_finite(box.max())) return invalid_input("box: coordinates must be finite numbers");
   const bool ordered =
       box.min().x() <= box.max().x() && box.min().y() <= box.max().y() && box.min().z() <= box.max().z();
-  return ordered ? Status() : invalid("box: the lower corner must come first");
+  return ordered ? Status() : invalid_input("box: the lower corner must come first");
 }
 
 Status check_corridor(const wire::Corridor& corridor) {
   if (corridor.line_size() < 4 || corridor.line_size() % 2 != 0)
-    return invalid("corridor: expected at least two corners with two coordinates each");
+    return invalid_input("corridor: expected at least two corners with two coordinates each");
   if (!std::all_of(corridor.line().begin(), corridor.line().end(), [](double value) { return std::isfinite(value); }))
-    return invalid("corridor: coordinates must be finite numbers");
+    return invalid_input("corridor: coordinates must be finite numbers");
   if (!(corridor.width() > 0) || !std::isfinite(corridor.width()))
-    return invalid("corridor: its width must be a finite number above 0");
+    return invalid_input("corridor: its width must be a finite number above 0");
   if (std::isnan(corridor.low()) || std::isnan(corridor.high()))
-    return invalid("corridor: its heights must be numbers");
+    return invalid_input("corridor: its heights must be numbers");
   const bool ordered = !corridor.has_low() || !corridor.has_high() || corridor.low() <= corridor.high();
-  return ordered ? Status() : invalid("corridor: the lower height must come first");
+  return ordered ? Status() : invalid_input("corridor: the lower height must come first");
 }
 
 }  // namespace
@@ -147,15 +145,15 @@ Status set_points_field(wire::GetPoints& points, std::string_view name, std::str
   }
   if (name != "format") return fail(ErrorKind::kNotFound, "there is no parameter '" + std::string(name) + "'");
   const Result<wire::PointFormat> format = parse_point_format(text);
-  if (!format) return invalid(format.error().message);
+  if (!format) return invalid_input(format.error().message);
   points.set_format(*format);
   return {};
 }
 
 Status check_points(const wire::GetPoints& points) {
   if (Status status = check_model_name(points.model()); !status) return status;
-  if (points.boxes_size() > kMaxRegionBoxes) return invalid("box: at most 64 are possible");
-  if (points.corridors_size() > kMaxCorridors) return invalid("corridor: at most 64 are possible");
+  if (points.boxes_size() > kMaxRegionBoxes) return invalid_input("box: at most 64 are possible");
+  if (points.corridors_size() > kMaxCorridors) return invalid_input("corridor: at most 64 are possible");
   for (const wire::Box& box : points.boxes()) {
     if (Status status = check_region_box(box); !status) return status;
   }
@@ -164,18 +162,18 @@ Status check_points(const wire::GetPoints& points) {
     if (Status status = check_corridor(corridor); !status) return status;
     corners += corridor.line_size() / 2;
   }
-  if (corners > kMaxCorridorCorners) return invalid("corridor: at most 1024 corners are possible");
+  if (corners > kMaxCorridorCorners) return invalid_input("corridor: at most 1024 corners are possible");
   for (const uint32_t code : points.classes()) {
-    if (code > kMaxClassCode) return invalid("classes: codes must be at most 255");
+    if (code > kMaxClassCode) return invalid_input("classes: codes must be at most 255");
   }
-  if (!wire::PointFormat_IsValid(points.format())) return invalid("format: unknown");
+  if (!wire::PointFormat_IsValid(points.format())) return invalid_input("format: unknown");
   return {};
 }
 
 Result<wire::PointFormat> parse_point_format(std::string_view text) {
   const std::string lower = to_lower(text);
   std::string names;
-  for (const auto& [name, format] : kFormats) {
+  for (const auto& [name, format] : kPointFormats) {
     if (lower == name) return format;
     names += (names.empty() ? "" : ", ") + std::string(name);
   }
@@ -183,7 +181,7 @@ Result<wire::PointFormat> parse_point_format(std::string_view text) {
 }
 
 std::string_view name_of(wire::PointFormat format) {
-  for (const auto& [name, value] : kFormats) {
+  for (const auto& [name, value] : kPointFormats) {
     if (value == format) return name;
   }
   return {};

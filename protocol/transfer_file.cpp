@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/invalid_input.h"
 #include "base/mapped_file.h"
 #include "protocol/volume_fields.h"
 
@@ -9,10 +10,6 @@ namespace surfcast::protocol {
 namespace {
 
 using nlohmann::json;
-
-tl::unexpected<Error> invalid(const std::string& what) {
-  return fail(ErrorKind::kInvalidInput, what);
-}
 
 /// The number of an object's field; none if it is no number.
 std::optional<double> number_in(const json& object, const char* name) {
@@ -56,11 +53,11 @@ Status read_point(const json& object, wire::TransferPoint& point) {
       "a point needs a value, a color of three numbers from 0 to 255 (or a color_linear, from 0 to 1), and an "
       "extinction "
       "or an opacity";
-  if (!object.is_object()) return invalid(wanted);
+  if (!object.is_object()) return invalid_input(wanted);
   const auto value = number_in(object, "value");
   const auto extinction = number_in(object, "extinction");
   const auto opacity = number_in(object, "opacity");
-  if (!value || !(extinction || opacity) || !read_any_color(object, point)) return invalid(wanted);
+  if (!value || !(extinction || opacity) || !read_any_color(object, point)) return invalid_input(wanted);
   point.set_value(*value);
   if (extinction) {
     point.set_extinction(*extinction);
@@ -73,7 +70,7 @@ Status read_point(const json& object, wire::TransferPoint& point) {
 Status read_preset(const json& document, wire::TransferFunction& transfer) {
   const json& name = document["preset"];
   const auto preset = name.is_string() ? parse_transfer_preset(name.get<std::string>()) : std::nullopt;
-  if (!preset) return invalid("preset: expected auto, gray, ct-bone, ct-soft or mr");
+  if (!preset) return invalid_input("preset: expected auto, gray, ct-bone, ct-soft or mr");
   transfer.set_preset(*preset);
   if (const auto first = number_in(document, "first")) transfer.set_first(*first);
   if (const auto last = number_in(document, "last")) transfer.set_last(*last);
@@ -82,7 +79,7 @@ Status read_preset(const json& document, wire::TransferFunction& transfer) {
 
 Status read_points(const json& document, wire::TransferFunction& transfer) {
   if (!document.contains("points") || !document["points"].is_array()) {
-    return invalid("not a transfer function: expected an object with points or a preset");
+    return invalid_input("not a transfer function: expected an object with points or a preset");
   }
   for (const json& entry : document["points"]) {
     if (Status status = read_point(entry, *transfer.add_points()); !status) return status;
@@ -94,7 +91,7 @@ Status read_points(const json& document, wire::TransferFunction& transfer) {
 
 Status parse_transfer_json(std::string_view text, wire::TransferFunction& transfer) {
   const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!document.is_object()) return invalid("not a JSON object");
+  if (!document.is_object()) return invalid_input("not a JSON object");
   wire::TransferFunction read;
   Status status = document.contains("preset") ? read_preset(document, read) : read_points(document, read);
   if (status) transfer = std::move(read);

@@ -10,10 +10,6 @@
 namespace surfcast::protocol {
 namespace {
 
-bool is_share(double value) {
-  return value >= 0 && value <= 1;
-}
-
 /// A part of a colour, 0 to 255.
 bool set_part(double value, uint32_t& part) {
   if (!(value >= 0 && value <= 255) || value != std::floor(value)) return false;

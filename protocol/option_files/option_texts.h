@@ -29,6 +29,9 @@ std::vector<std::string_view> names_of_choice(std::string_view form);
 /// The shortest text that is read as the same number.
 std::string number_text(double number);
 
+/// Columns of the files that are made.
+inline constexpr size_t kLineWidth = 120;
+
 /// A text in lines that have at most `width` columns, if its words have, each after `prefix`.
 std::string wrapped(std::string_view text, std::string_view prefix, size_t width);
 

@@ -3,9 +3,7 @@
 namespace surfcast::protocol {
 namespace {
 
-constexpr size_t kLineWidth = 120;
-
-constexpr std::string_view kHead =
+constexpr std::string_view kPythonHead =
     R"("""The options of pictures that are one value. Made by option_files from the table in protocol/picture_fields.cpp."""
 
 from __future__ import annotations
@@ -81,7 +79,7 @@ std::string python_options() {
     types.append("    ").append(field.name).append(": ").append(python_type(field)).append("\n");
     table.append("    \"").append(field.name).append("\": PlainField(").append(python_value(field)).append("),\n");
   }
-  return std::string(kHead) + types + std::string(kTable) + table + "}\n";
+  return std::string(kPythonHead) + types + std::string(kTable) + table + "}\n";
 }
 
 }  // namespace surfcast::protocol

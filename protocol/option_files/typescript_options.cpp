@@ -5,9 +5,7 @@
 namespace surfcast::protocol {
 namespace {
 
-constexpr size_t kLineWidth = 120;
-
-constexpr std::string_view kHead = R"(// Made by option_files from the table in protocol/picture_fields.cpp.
+constexpr std::string_view kTypescriptHead = R"(// Made by option_files from the table in protocol/picture_fields.cpp.
 import type { MessageInitShape } from '@bufbuild/protobuf';
 import type { Rgb } from '../state/rgb';
 import * as plain from '../state/plain_values';
@@ -130,7 +128,7 @@ std::string choices() {
 }  // namespace
 
 std::string typescript_options() {
-  std::string text = std::string(kHead) + choices();
+  std::string text = std::string(kTypescriptHead) + choices();
   text += "/** The options of a link that are one value. */\nexport interface PlainOptions {\n";
   text += lines([](const PictureField& field) {
     return wrapped(field.help, "  // ", kLineWidth) + "  readonly " + camel_case(field.name) + ": " + type_of(field) +

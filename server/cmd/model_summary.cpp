@@ -8,17 +8,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "base/ascii_text.h"
 #include "cmd/georeference_text.h"
 #include "model/volume_facts.h"
 
 namespace surfcast::cmd {
 namespace {
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
-}
 
 /// Names of everything a surfel of the model has.
 std::vector<std::string> attribute_names(const model::ModelInfo& info) {
@@ -27,6 +22,10 @@ std::vector<std::string> attribute_names(const model::ModelInfo& info) {
   if (info.color_bits > 0) names.push_back("color");
   names.insert(names.end(), info.scalar_names.begin(), info.scalar_names.end());
   return names;
+}
+
+std::string list_text(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : joined(names, ", ");
 }
 
 std::string text_of(const glm::dvec3& v) {
@@ -207,7 +206,7 @@ ModelSummary summarize(const model::ModelFile& model, uint64_t file_bytes) {
 std::string to_text(const ModelSummary& summary) {
   const model::ModelInfo& info = summary.info;
   std::string text = fmt::format("model: {}\n", summary.path.string());
-  text += fmt::format("sources: {}\n", joined(info.source_names));
+  text += fmt::format("sources: {}\n", list_text(info.source_names));
   if (info.in_place)
     text += "in place: blocks are made of its points when they are needed; counts of levels are bounds\n";
   text += fmt::format("surfels: {}\n", info.surfels);
@@ -230,7 +229,7 @@ std::string to_text(const ModelSummary& summary) {
   text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
   if (info.even) text += "sampling: even, from meshes\n";
   text += fmt::format("color bits: {}\n", info.color_bits);
-  text += fmt::format("attributes: {}\n", joined(attribute_names(info)));
+  text += fmt::format("attributes: {}\n", list_text(attribute_names(info)));
   for (const model::AttributeRange& range : info.ranges) {
     text += fmt::format("{}: {} .. {}", range.attribute, range.smallest, range.largest);
     const bool tails = range.low > range.smallest || range.high < range.largest;

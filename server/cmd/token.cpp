@@ -11,6 +11,7 @@
 
 #include "access/secret.h"
 #include "access/token_file.h"
+#include "base/ascii_text.h"
 #include "cmd/commands.h"
 #include "protocol/parse.h"
 #include "protocol/request_flags.h"
@@ -63,18 +64,12 @@ Status add_token(TokenCommand command) {
   return {};
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
-  return text;
-}
-
 Status list_tokens(const fs::path& file) {
   const auto tokens = access::read_tokens(file);
   if (!tokens) return fail(tokens);
   const auto now = std::chrono::system_clock::now();
   for (const Principal& token : *tokens) {
-    std::cout << token.name << '\t' << (token.models.empty() ? "-" : joined(token.models)) << '\t'
+    std::cout << token.name << '\t' << (token.models.empty() ? "-" : joined(token.models, ",")) << '\t'
               << (token.expires ? access::time_text(*token.expires) : "never")
               << (access::has_expired(token, now) ? " (expired)" : "") << '\n';
   }

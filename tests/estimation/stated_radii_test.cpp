@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoRadius = std::numeric_limits<float>::quiet_NaN();
 
 using Positions = std::vector<glm::dvec3>;
 using RadiusAt = std::function<double(const glm::dvec3&)>;
@@ -171,7 +171,7 @@ TEST(StatedRadiiTest, AnisotropicSamplingsAreScaledByTheAreaOfAPoint) {
 TEST(StatedRadiiTest, PointsWithoutARadiusGetEstimatesBesideScaledOnes) {
   const Positions positions = moved_lattice(40);
   const auto lacks = [](const glm::dvec3& p) { return std::lround(p.x + p.y) % 2 == 0; };
-  const Decided decided(positions, [&](const glm::dvec3& p) { return lacks(p) ? double{kNan} : 0.75; });
+  const Decided decided(positions, [&](const glm::dvec3& p) { return lacks(p) ? double{kNoRadius} : 0.75; });
   ASSERT_EQ(decided.decisions[0].outcome, RadiusOutcome::kScaled);
   EXPECT_EQ(decided.decisions[0].stated + decided.decisions[0].missing, positions.size());
   EXPECT_EQ(decided.decisions[0].estimated(), decided.decisions[0].missing);
@@ -188,7 +188,7 @@ TEST(StatedRadiiTest, EachInputHasAFactorOfItsOwnEvenOnTheSameSurface) {
   Inputs inputs;
   inputs.add(halves[0], [](const glm::dvec3&) { return 0.5; });
   inputs.add(halves[1], [](const glm::dvec3&) { return 2; });
-  inputs.add({{10, 10, 5}}, [](const glm::dvec3&) { return double{kNan}; });
+  inputs.add({{10, 10, 5}}, [](const glm::dvec3&) { return double{kNoRadius}; });
   const Decided decided(inputs);
   EXPECT_EQ(decided.decisions[0].outcome, RadiusOutcome::kScaled);
   EXPECT_EQ(decided.decisions[1].outcome, RadiusOutcome::kScaled);

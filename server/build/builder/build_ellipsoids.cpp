@@ -12,9 +12,6 @@
 namespace surfcast::builder {
 namespace {
 
-/// Of the budget, for the ellipsoids that are sorted. Sorting copies them, and blocks are made of others.
-constexpr uint64_t kSortingShare = 4;
-
 /// An input and what is known of it.
 struct Opened {
   std::filesystem::path path;

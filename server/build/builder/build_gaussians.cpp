@@ -12,8 +12,6 @@ namespace surfcast::builder {
 namespace {
 
 constexpr uint64_t kRun = 8192;  // Gaussians that are read at once
-/// Of the budget, for the Gaussians that are sorted. Sorting copies them, and blocks are made of others.
-constexpr uint64_t kSortingShare = 4;
 
 std::string name_of(const std::filesystem::path& path) {
   const std::filesystem::path name = path.filename();

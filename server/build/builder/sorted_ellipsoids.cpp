@@ -11,7 +11,7 @@ namespace surfcast::builder {
 namespace {
 
 /// An ellipsoid in the spool; the ordered bits of its scalars follow, 64 each.
-struct Record {
+struct EllipsoidRecord {
   glm::dvec3 position{0};
   glm::dvec3 values{0};
   glm::dquat rotation{1, 0, 0, 0};
@@ -43,13 +43,14 @@ EllipsoidSorter::EllipsoidSorter(std::filesystem::path target, const geometry::R
     : root_(root),
       source_(source),
       colors_(colors),
-      record_(sizeof(Record) + scalars_of(source) * sizeof(uint64_t)),
+      record_(sizeof(EllipsoidRecord) + scalars_of(source) * sizeof(uint64_t)),
       records_(std::move(target), record_.size(), bytes) {}
 
 Status EllipsoidSorter::add(const ellipsoid::Ellipsoids& ellipsoids) {
   SURFCAST_EXPECTS(ellipsoids.scalars.size() == scalars_of(source_));
   for (size_t i = 0; i < ellipsoids.size(); ++i) {
-    Record record{ellipsoids.positions[i], ellipsoids.values[i], ellipsoids.rotations[i], ellipsoids.samples[i], {}};
+    EllipsoidRecord record{
+        ellipsoids.positions[i], ellipsoids.values[i], ellipsoids.rotations[i], ellipsoids.samples[i], {}};
     if (colors_) record.color = glm::u8vec4(ellipsoids.colors[i], 0);
     std::memcpy(record_.data(), &record, sizeof record);
     for (size_t s = 0; s < ellipsoids.scalars.size(); ++s) {
@@ -74,7 +75,7 @@ ellipsoid::Ellipsoids EllipsoidSorter::empty_columns() const {
 Result<ellipsoid::Ellipsoids> EllipsoidSorter::take(size_t count) {
   ellipsoid::Ellipsoids ellipsoids = empty_columns();
   const Status status = records_.take(count, [&](std::span<const std::byte> bytes) {
-    Record record;
+    EllipsoidRecord record;
     std::memcpy(&record, bytes.data(), sizeof record);
     ellipsoids.positions.push_back(record.position);
     ellipsoids.values.push_back(record.values);

@@ -13,6 +13,9 @@
 
 namespace surfcast::builder {
 
+/// Of the memory budget, for the records that are sorted. Sorting copies them, and blocks are made of others.
+inline constexpr uint64_t kSortingShare = 4;
+
 /// Sorts records of one size by their codes, those of one code in the order in which they were added. Those that exceed
 /// the memory wait in sorted runs in a temporary file beside the target. The result does not depend on the memory.
 class SortedRecords {

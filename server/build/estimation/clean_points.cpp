@@ -10,16 +10,13 @@
 
 #include "base/hash.h"
 #include "estimation/first_equals.h"
+#include "geometry/finite.h"
 #include "scan/unit_normal.h"
 
 namespace surfcast::estimation {
 namespace {
 
 using Keep = std::vector<bool>;
-
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 template <typename T>
 void compact(std::vector<T>& values, const Keep& keep) {
@@ -96,7 +93,7 @@ void drop_unusable_points(scan::ScanPoints& points, SurfelReport& report) {
   uint64_t dropped = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     points.positions[i] += 0.0;  // turns -0 into +0, which is the same position
-    if (!finite(points.positions[i])) {
+    if (!geometry::finite(points.positions[i])) {
       ++report.not_finite;
     } else if (!points.normals.empty() && points.normals[i] == glm::vec3(0)) {
       ++report.zero_normals;

@@ -29,7 +29,7 @@ double area_of(const SitesOfPart& part, size_t site) {
 /// Sites are added up in chunks of this size, whatever the number of threads, so that sums do not depend on it.
 constexpr size_t kSumChunk = 65536;
 
-size_t chunks_of(size_t sites) {
+size_t sum_chunks_of(size_t sites) {
   return (sites + kSumChunk - 1) / kSumChunk;
 }
 
@@ -88,7 +88,7 @@ class ChunkSums {
 /// Calls `use(site, sums)` for all sites, chunk by chunk on all threads, and adds up the sums of the chunks in order.
 template <typename Use>
 void add_up(size_t sites, PartSigns& signs, const Use& use) {
-  std::vector<ChunkSums> sums(chunks_of(sites));
+  std::vector<ChunkSums> sums(sum_chunks_of(sites));
   tbb::parallel_for(size_t{0}, sums.size(), [&](size_t chunk) {
     for (size_t i = chunk * kSumChunk; i < std::min(sites, (chunk + 1) * kSumChunk); ++i) use(i, sums[chunk]);
   });

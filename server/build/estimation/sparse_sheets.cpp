@@ -37,7 +37,7 @@ struct Candidate {
 };
 
 /// Sites among which sheets are looked for, and those of them that may be on one.
-struct Candidates {
+struct SheetCandidates {
   std::vector<uint32_t> members;  ///< sites, ascending
   std::vector<Candidate> tested;  ///< some of them
 };
@@ -116,11 +116,11 @@ float distance_beside(const SheetSearch& search, std::span<const float> beside, 
   return nearest == neighbours.end() ? 0 : beside[*nearest];
 }
 
-Candidates find_candidates(const SheetSearch& search) {
+SheetCandidates find_candidates(const SheetSearch& search) {
   const std::vector<float> thirds = find_third_distances(search);
   const std::vector<Role> roles = find_roles(search, thirds);
   const std::vector<float> beside = find_distances_beside(search, roles);
-  Candidates candidates;
+  SheetCandidates candidates;
   for (uint32_t site = 0; site < roles.size(); ++site) {
     if (roles[site] == Role::kSurface || continues_surface(search, thirds, roles, site)) continue;
     candidates.members.push_back(site);
@@ -196,7 +196,7 @@ std::optional<SheetSite> sheet_site(const SheetSearch& search, const CandidateTr
 }
 
 /// Those of some sites that are on sheets, as far as they and their neighbours tell, ascending.
-std::vector<SheetSite> sites_on_planes(const SheetSearch& search, const Candidates& candidates) {
+std::vector<SheetSite> sites_on_planes(const SheetSearch& search, const SheetCandidates& candidates) {
   const CandidateTree tree(search.sites, candidates.members);
   tbb::enumerable_thread_specific<std::vector<SheetSite>> found;
   tbb::parallel_for(size_t{0}, candidates.tested.size(), [&](size_t i) {
@@ -227,7 +227,7 @@ bool is_shared_plane(const SheetSearch& search, std::span<const SheetSite> sheet
 
 std::vector<SheetSite> find_sparse_sheets(const SheetSearch& search) {
   if (search.graph.degree < kNearNeighbours) return {};
-  const Candidates candidates = find_candidates(search);
+  const SheetCandidates candidates = find_candidates(search);
   if (candidates.members.size() <= kWideNeighbours || candidates.tested.empty()) return {};
   const std::vector<SheetSite> sheets = sites_on_planes(search, candidates);
   std::vector<SheetSite> shared;

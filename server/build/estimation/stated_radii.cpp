@@ -15,7 +15,7 @@
 namespace surfcast::estimation {
 namespace {
 
-constexpr size_t kNearest = 6;
+constexpr size_t kComparedNeighbours = 6;
 
 // Authors mean a share of the spacing or a multiple of it. Radii in other units are far off, and radii that do not
 // follow the sampling spread. docs/kernel.md has the spread of conventions and of unrelated radii.
@@ -64,7 +64,7 @@ double ratio_at(size_t site, const StatedSite& point, const std::vector<StatedSi
                 std::span<const float> needed, const NeighbourGraph& graph) {
   double stated_area = point.radius * point.radius;
   double needed_area = double{needed[site]} * double{needed[site]};
-  for (const uint32_t j : graph.of(site).first(std::min(kNearest, graph.degree))) {
+  for (const uint32_t j : graph.of(site).first(std::min(kComparedNeighbours, graph.degree))) {
     if (stated[j].radius == 0 || stated[j].input != point.input) continue;
     stated_area += stated[j].radius * stated[j].radius;
     needed_area += double{needed[j]} * double{needed[j]};

@@ -21,7 +21,7 @@
 namespace surfcast::estimation {
 namespace {
 
-constexpr size_t kNearest = 8;
+constexpr size_t kNearestSamples = 8;
 constexpr uint64_t kPointsPerSample = 8;
 /// Samples of a whole cloud, at most: 28 bytes each, and a tree over them.
 constexpr uint64_t kMaxSamples = uint64_t{1} << 20;
@@ -31,10 +31,10 @@ constexpr int kMutual = 2;
 
 using geometry::Box;
 using geometry::MortonTree;
-using Nearest = NearestList<kNearest>;
+using Nearest = NearestList<kNearestSamples>;
 
 /// A sample, by the cell in which it lies. The order decides between equally near samples.
-struct Entry {
+struct CodedSample {
   uint64_t code = 0;
   SurfaceSample sample;
 
@@ -42,11 +42,11 @@ struct Entry {
     const glm::dvec3& p = sample.position;
     return std::tuple(code, p.x, p.y, p.z, sample.radius);
   }
-  bool operator<(const Entry& other) const { return key() < other.key(); }
+  bool operator<(const CodedSample& other) const { return key() < other.key(); }
 };
 
-std::vector<Entry> sort_samples(std::span<const SurfaceSample> samples) {
-  std::vector<Entry> entries(samples.size());
+std::vector<CodedSample> sort_samples(std::span<const SurfaceSample> samples) {
+  std::vector<CodedSample> entries(samples.size());
   tbb::parallel_for(size_t{0}, samples.size(), [&](size_t i) {
     entries[i] = {geometry::morton_code({glm::dvec3(0), 1}, samples[i].position), samples[i]};
   });
@@ -183,7 +183,7 @@ struct SurfaceSpacing::Index {
 
   Index(const Box& bounds, std::span<const SurfaceSample> samples) : frame(bounds) {
     std::vector<uint64_t> codes;
-    for (const Entry& entry : sort_samples(samples)) {
+    for (const CodedSample& entry : sort_samples(samples)) {
       codes.push_back(entry.code);
       positions.push_back(entry.sample.position);
       radii.push_back(entry.sample.radius);
@@ -191,14 +191,14 @@ struct SurfaceSpacing::Index {
     if (!samples.empty()) tree.emplace(positions, codes);
   }
 
-  [[nodiscard]] size_t degree() const { return std::min(kNearest, radii.size()); }
+  [[nodiscard]] size_t degree() const { return std::min(kNearestSamples, radii.size()); }
 
   [[nodiscard]] Nearest nearest(const glm::dvec3& local) const {
-    return nearest_in_tree<kNearest>(*tree, positions, local, degree(), [](uint32_t) { return false; });
+    return nearest_in_tree<kNearestSamples>(*tree, positions, local, degree(), [](uint32_t) { return false; });
   }
 
   [[nodiscard]] float median(const Nearest& nearest) const {
-    std::array<float, kNearest> found{};
+    std::array<float, kNearestSamples> found{};
     std::ranges::transform(nearest.all(), found.begin(), [this](const Found& sample) { return radii[sample.second]; });
     return of_median_rank({found.begin(), nearest.all().size()});
   }

@@ -10,11 +10,11 @@
 namespace surfcast::render {
 namespace {
 
-constexpr double kFirstConstant = 0.1;  // of the time at full size, before another size has been measured
-constexpr double kLeast = 0.125;        // scale
-constexpr double kSame = 1.03;          // ratio of scales that are not told apart
-constexpr double kLongestStep = 3;      // ratio of scales
-constexpr size_t kMaxPoints = 5;
+constexpr double kFirstConstant = 0.1;   // of the time at full size, before another size has been measured
+constexpr double kLeast = 0.125;         // scale
+constexpr double kSame = 1.03;           // ratio of scales that are not told apart
+constexpr double kLongestScaleStep = 3;  // ratio of scales
+constexpr size_t kMostScales = 5;
 
 }  // namespace
 
@@ -36,12 +36,13 @@ ScaleTime ScaleSearch::best() const {
 
 std::optional<double> ScaleSearch::next() const {
   const ScaleTime& smallest = points_.back();
-  if (fits(points_.front()) || points_.size() >= kMaxPoints) return std::nullopt;
+  if (fits(points_.front()) || points_.size() >= kMostScales) return std::nullopt;
   if (!fits(smallest)) {
     if (smallest.scale <= kLeast) return std::nullopt;
     const ScaleTime other =
         points_.size() == 1 ? ScaleTime{0, kFirstConstant * smallest.milliseconds} : points_[points_.size() - 2];
-    return std::clamp(solve(smallest, other), std::max(kLeast, smallest.scale / kLongestStep), smallest.scale / kSame);
+    return std::clamp(solve(smallest, other), std::max(kLeast, smallest.scale / kLongestScaleStep),
+                      smallest.scale / kSame);
   }
   const ScaleTime found = best();
   const ScaleTime larger = *std::prev(std::ranges::find(points_, found.scale, &ScaleTime::scale));

@@ -66,11 +66,11 @@ std::optional<double> TimeSearch::towards_faster() const {
 }
 
 std::optional<double> TimeSearch::finer() const {
-  constexpr double kLongestStep = 4;
+  constexpr double kFarthest = 4;
   const SpacingTime& end = points_.front();
   double spacing = end.spacing / 2;
   if (points_.size() > 1 && points_[0].milliseconds > points_[1].milliseconds) {
-    spacing = std::clamp(solve(points_[0], points_[1]), end.spacing / kLongestStep, end.spacing / 1.1);
+    spacing = std::clamp(solve(points_[0], points_[1]), end.spacing / kFarthest, end.spacing / 1.1);
   }
   return spacing < kFinestTry ? 0 : spacing;
 }

@@ -132,7 +132,7 @@ bool holds(const volume::IndexBox& box, const glm::dvec3& place) {
   return glm::all(glm::lessThanEqual(box.low, place)) && glm::all(glm::lessThanEqual(place, box.high));
 }
 
-constexpr double kLongestStep = 2;  ///< samples; more would pass thin bones
+constexpr double kLongestRayStep = 2;  ///< samples; more would pass thin bones
 
 /// The place from which distances on rays are counted.
 struct Anchor {
@@ -163,7 +163,7 @@ double step_from_afar(std::span<const VisibleBrick> bricks, const VolumePlace& p
   const auto finest = [](const VisibleBrick& brick) { return brick.block->header().level == 0; };
   if (std::ranges::none_of(bricks, finest)) return 1;
   const double pixels = frame.eta * place.spacing() / std::max(distance_to(place, frame.eye), 1e-300);
-  return std::clamp(1 / pixels, 1.0, kLongestStep);
+  return std::clamp(1 / pixels, 1.0, kLongestRayStep);
 }
 
 /// `step`: between places on rays, samples of a brick's level.
@@ -214,7 +214,7 @@ void set_surfaces(const VolumePlace& place, const VolumeLook& look, const Transf
 
 /// In motion, places on rays are as far apart as the spacing of the picture allows. At rest they are not.
 double step_of(const picture::PictureRequest& request) {
-  return request.rest_spacing ? std::clamp(request.spacing, 1.0, kLongestStep) : 1;
+  return request.rest_spacing ? std::clamp(request.spacing, 1.0, kLongestRayStep) : 1;
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace surfcast::grid {
 namespace {
 
-constexpr std::string_view kFormat = "MetaImage";
+constexpr std::string_view kMetaImage = "MetaImage";
 
 /// Keys in small letters.
 using Keys = std::map<std::string, std::string, std::less<>>;
@@ -36,7 +36,7 @@ Result<MetaText> split_header(std::string_view text) {
   while (const std::optional<std::string_view> line = lines.next()) {
     if (trimmed(*line).empty()) continue;
     auto entry = split_line(*line);
-    if (!entry) return bad_header(kFormat, "line not understood", *line);
+    if (!entry) return bad_header(kMetaImage, "line not understood", *line);
     if (entry->first == "elementdatafile") {
       header.data_file = std::move(entry->second);
       header.after = lines.offset();
@@ -61,7 +61,7 @@ bool is_true(std::string_view text) {
 }
 
 /// MetaIO's long has four bytes on every machine.
-Result<ScalarType> parse_type(std::string_view text) {
+Result<ScalarType> parse_meta_image_type(std::string_view text) {
   static const std::map<std::string, ScalarType, std::less<>> kTypes = {
       {"MET_CHAR", ScalarType::kInt8},       {"MET_UCHAR", ScalarType::kUint8},
       {"MET_SHORT", ScalarType::kInt16},     {"MET_USHORT", ScalarType::kUint16},
@@ -71,7 +71,7 @@ Result<ScalarType> parse_type(std::string_view text) {
       {"MET_FLOAT", ScalarType::kFloat32},   {"MET_DOUBLE", ScalarType::kFloat64},
   };
   const auto type = kTypes.find(text);
-  if (type == kTypes.end()) return bad_header(kFormat, "unknown type of samples", text);
+  if (type == kTypes.end()) return bad_header(kMetaImage, "unknown type of samples", text);
   return type->second;
 }
 
@@ -81,7 +81,7 @@ Result<std::vector<double>> numbers(const Keys& keys, std::initializer_list<std:
   const std::string_view text = value_of(keys, names);
   if (text.empty()) return fallback;
   auto values = numbers_of(text);
-  if (!values || values->size() != fallback.size()) return bad_header(kFormat, "wrong numbers", text);
+  if (!values || values->size() != fallback.size()) return bad_header(kMetaImage, "wrong numbers", text);
   return std::move(*values);
 }
 
@@ -95,7 +95,7 @@ Result<std::vector<uint64_t>> parse_sizes(const Keys& keys) {
   auto sizes = counts_of(value_of(keys, {"dimsize"}));
   const auto dimensions = scan::parse_number<uint64_t>(value_of(keys, {"ndims"}));
   if (!dimensions || !sizes || sizes->size() != *dimensions || sizes->empty()) {
-    return bad_header(kFormat, "not a size for each dimension", value_of(keys, {"dimsize"}));
+    return bad_header(kMetaImage, "not a size for each dimension", value_of(keys, {"dimsize"}));
   }
   if (std::any_of(sizes->begin() + std::min<ptrdiff_t>(3, std::ssize(*sizes)), sizes->end(),
                   [](uint64_t size) { return size != 1; })) {
@@ -151,15 +151,15 @@ WorldFrame parse_frame(const Keys& keys) {
   return letters.empty() || letters.find('?') != std::string_view::npos ? WorldFrame::kUnstated : WorldFrame::kLps;
 }
 
-Result<GridHeader> describe(const Keys& keys) {
+Result<GridHeader> describe_meta_image(const Keys& keys) {
   GridHeader header;
-  header.format = kFormat;
+  header.format = kMetaImage;
   header.name = scan::printable(value_of(keys, {"name", "comment"}));
   header.frame = parse_frame(keys);
   header.length_unit = scan::printable(value_of(keys, {"distanceunits"}));
   const Result<std::vector<uint64_t>> sizes = parse_sizes(keys);
   if (!sizes) return fail(sizes);
-  const Result<ScalarType> type = parse_type(value_of(keys, {"elementtype"}));
+  const Result<ScalarType> type = parse_meta_image_type(value_of(keys, {"elementtype"}));
   if (!type) return fail(type);
   header.type = *type;
   for (const Status& status : {check_channels(keys), place(keys, *sizes, header), parse_scale(keys, header)}) {
@@ -225,7 +225,7 @@ Status parse_skip(const Keys& keys, StoredSamples& samples) {
   const std::string_view text = value_of(keys, {"headersize"});
   if (text.empty()) return {};
   const auto bytes = scan::parse_number<int64_t>(text);
-  if (!bytes || *bytes < -1) return bad_header(kFormat, "not a size of a header", text);
+  if (!bytes || *bytes < -1) return bad_header(kMetaImage, "not a size of a header", text);
   // A packed file has the header in front of the packed bytes.
   if (samples.packing == Packing::kInflate) {
     samples.offset += static_cast<uint64_t>(std::max<int64_t>(*bytes, 0));
@@ -249,7 +249,7 @@ bool looks_like_meta_image(std::string_view text) {
 Result<StoredGrid> parse_meta_image(const GridFile& file) {
   const Result<MetaText> text = split_header(file.text());
   if (!text) return fail(text);
-  Result<GridHeader> header = describe(text->keys);
+  Result<GridHeader> header = describe_meta_image(text->keys);
   if (!header) return fail(header);
   StoredSamples samples;
   samples.packing = packing_of(text->keys);

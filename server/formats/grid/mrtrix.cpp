@@ -19,42 +19,36 @@ namespace {
 using stream::FilePtr;
 using stream::StreamPtr;
 
-constexpr std::string_view kFormat = "MRtrix";
+constexpr std::string_view kMrtrix = "MRtrix";
 constexpr std::string_view kMagic = "mrtrix image";
 constexpr size_t kMaxHeader = size_t{1} << 20;
 constexpr uint64_t kTensorImages = 6;
 
-bool is_packed(const FilePtr& file) {
-  const auto bytes = file->bytes();
-  return bytes.size() > 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
-}
-
 /// The first bytes of a file, unpacked; fewer if it is shorter.
 std::string head_of(const FilePtr& file, size_t size) {
-  StreamPtr stream = std::make_unique<stream::MappedStream>(file);
-  if (is_packed(file)) stream = std::make_unique<stream::InflateStream>(std::move(stream));
+  const StreamPtr stream = stream::open_inflated(file);
   std::vector<std::byte> head(size);
   const Result<size_t> got = stream->read(head);
   return std::string(scan::as_text(std::span(head).first(got.value_or(0))));
 }
 
 /// Values of the keys, which may occur several times.
-using Keys = std::map<std::string, std::vector<std::string>, std::less<>>;
+using KeyLines = std::map<std::string, std::vector<std::string>, std::less<>>;
 
-Result<Keys> split_header(std::string_view text) {
+Result<KeyLines> split_mrtrix_header(std::string_view text) {
   HeaderLines lines(text);
   lines.next();
-  Keys keys;
+  KeyLines keys;
   while (const std::optional<std::string_view> line = lines.next()) {
     if (trimmed(*line) == "END") return keys;
     const size_t colon = line->find(':');
-    if (colon == std::string_view::npos) return bad_header(kFormat, "line not understood", *line);
+    if (colon == std::string_view::npos) return bad_header(kMrtrix, "line not understood", *line);
     keys[to_lower(trimmed(line->substr(0, colon)))].emplace_back(trimmed(line->substr(colon + 1)));
   }
   return fail(ErrorKind::kInvalidInput, "truncated: MRtrix header without END");
 }
 
-std::string_view value_of(const Keys& keys, std::string_view key) {
+std::string_view value_of(const KeyLines& keys, std::string_view key) {
   const auto found = keys.find(key);
   return found == keys.end() ? std::string_view() : std::string_view(found->second.front());
 }
@@ -76,13 +70,13 @@ Result<std::vector<StoredAxis>> parse_layout(std::string_view text, size_t axes)
   const std::string spaced = with_spaces(text);  // the words are parts of it
   for (const std::string_view word : words_of(spaced)) {
     const auto rank = scan::parse_number<int64_t>(word.substr(word.starts_with('-') ? 1 : 0));
-    if (!rank || *rank < 0 || *rank >= static_cast<int64_t>(axes)) return bad_header(kFormat, "wrong layout", text);
+    if (!rank || *rank < 0 || *rank >= static_cast<int64_t>(axes)) return bad_header(kMrtrix, "wrong layout", text);
     layout.push_back({*rank, word.starts_with('-')});
   }
   std::vector<bool> seen(axes);
   for (const StoredAxis& axis : layout) seen[static_cast<size_t>(axis.rank)] = true;
   const bool all = std::all_of(seen.begin(), seen.end(), [](bool b) { return b; });
-  if (layout.size() != axes || !all) return bad_header(kFormat, "wrong layout", text);
+  if (layout.size() != axes || !all) return bad_header(kMrtrix, "wrong layout", text);
   return layout;
 }
 
@@ -91,7 +85,7 @@ struct SampleType {
   bool swapped = false;
 };
 
-Result<SampleType> parse_type(std::string_view text) {
+Result<SampleType> parse_mrtrix_type(std::string_view text) {
   static constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
       {"int8", ScalarType::kInt8},       {"uint8", ScalarType::kUint8},   {"int16", ScalarType::kInt16},
       {"uint16", ScalarType::kUint16},   {"int32", ScalarType::kInt32},   {"uint32", ScalarType::kUint32},
@@ -109,18 +103,18 @@ Result<SampleType> parse_type(std::string_view text) {
 }
 
 /// The columns are the axes of the image in the world, then the place of its first sample.
-Result<glm::dmat4x3> parse_transform(const Keys& keys) {
+Result<glm::dmat4x3> parse_transform(const KeyLines& keys) {
   glm::dmat4x3 transform(1.0);
   const auto found = keys.find("transform");
   if (found == keys.end()) return transform;
   std::vector<double> numbers;
   for (const std::string& row : found->second) {
     const auto parsed = numbers_of(with_spaces(row));
-    if (!parsed) return bad_header(kFormat, "wrong transform", row);
+    if (!parsed) return bad_header(kMrtrix, "wrong transform", row);
     numbers.insert(numbers.end(), parsed->begin(), parsed->end());
   }
   if (numbers.size() != 12 && numbers.size() != 16) {
-    return bad_header(kFormat, "wrong transform", found->second.front());
+    return bad_header(kMrtrix, "wrong transform", found->second.front());
   }
   size_t next = 0;
   for (int row = 0; row < 3; ++row) {
@@ -135,12 +129,12 @@ struct ImageAxes {
   std::vector<StoredAxis> layout;
 };
 
-Result<ImageAxes> parse_axes(const Keys& keys) {
+Result<ImageAxes> parse_axes(const KeyLines& keys) {
   const auto sizes = counts_of(with_spaces(value_of(keys, "dim")));
   const auto spacing = numbers_of(with_spaces(value_of(keys, "vox")));
-  if (!sizes || sizes->empty()) return bad_header(kFormat, "wrong sizes", value_of(keys, "dim"));
+  if (!sizes || sizes->empty()) return bad_header(kMrtrix, "wrong sizes", value_of(keys, "dim"));
   if (!spacing || spacing->size() < std::min<size_t>(3, sizes->size())) {
-    return bad_header(kFormat, "wrong sizes of voxels", value_of(keys, "vox"));
+    return bad_header(kMrtrix, "wrong sizes of voxels", value_of(keys, "vox"));
   }
   Result<std::vector<StoredAxis>> layout = parse_layout(value_of(keys, "layout"), sizes->size());
   if (!layout) return fail(layout);
@@ -195,22 +189,22 @@ void place(const ImageAxes& axes, const glm::dmat4x3& transform, GridHeader& hea
 }
 
 /// "offset,scale".
-Status take_scaling(const Keys& keys, GridHeader& header) {
+Status take_scaling(const KeyLines& keys, GridHeader& header) {
   const std::string_view text = value_of(keys, "scaling");
   if (text.empty()) return {};
   const auto numbers = numbers_of(with_spaces(text));
-  if (!numbers || numbers->size() != 2) return bad_header(kFormat, "wrong scaling", text);
+  if (!numbers || numbers->size() != 2) return bad_header(kMrtrix, "wrong scaling", text);
   header.intercept = (*numbers)[0];
   header.slope = (*numbers)[1];
   return {};
 }
 
 /// Where the samples are: "file: . OFFSET", or the name of another file.
-Status store_samples(const Keys& keys, const GridFile& file, StoredGrid& grid) {
+Status store_samples(const KeyLines& keys, const GridFile& file, StoredGrid& grid) {
   const std::string_view text = value_of(keys, "file");
   const std::vector<std::string_view> words = words_of(text);
   const auto offset = words.size() > 1 ? scan::parse_number<int64_t>(words[1]) : std::optional<int64_t>(0);
-  if (words.empty() || !offset || *offset < 0) return bad_header(kFormat, "wrong place of the samples", text);
+  if (words.empty() || !offset || *offset < 0) return bad_header(kMrtrix, "wrong place of the samples", text);
   StoredSamples samples;
   samples.type = grid.header.type;
   samples.bytes = grid.header.samples() * grid.header.sample_bytes();
@@ -225,18 +219,18 @@ Status store_samples(const Keys& keys, const GridFile& file, StoredGrid& grid) {
     grid.data_files = 1;
     grid.data_file = [path = *path](uint64_t) { return path; };
   }
-  samples.packing = is_packed(data) ? Packing::kInflate : Packing::kRaw;
+  samples.packing = stream::is_gzip(data->bytes()) ? Packing::kInflate : Packing::kRaw;
   samples.file = std::move(data);
   grid.open = [samples = std::move(samples)] { return open_samples(samples); };
   return {};
 }
 
-Result<StoredGrid> describe(const Keys& keys) {
+Result<StoredGrid> describe_mrtrix(const KeyLines& keys) {
   StoredGrid grid;
-  grid.header.format = kFormat;
+  grid.header.format = kMrtrix;
   const Result<ImageAxes> axes = parse_axes(keys);
   if (!axes) return fail(axes);
-  const Result<SampleType> type = parse_type(value_of(keys, "datatype"));
+  const Result<SampleType> type = parse_mrtrix_type(value_of(keys, "datatype"));
   if (!type) return fail(type);
   grid.header.type = type->type;
   grid.swapped = type->swapped;
@@ -252,15 +246,15 @@ Result<StoredGrid> describe(const Keys& keys) {
 }  // namespace
 
 bool looks_like_mrtrix(const FilePtr& file) {
-  if (!is_packed(file)) return scan::as_text(file->bytes()).starts_with(kMagic);
+  if (!stream::is_gzip(file->bytes())) return scan::as_text(file->bytes()).starts_with(kMagic);
   return head_of(file, kMagic.size()) == kMagic;
 }
 
 Result<StoredGrid> parse_mrtrix(const GridFile& file) {
   const std::string head = head_of(file.file, kMaxHeader);
-  const Result<Keys> keys = split_header(head);
+  const Result<KeyLines> keys = split_mrtrix_header(head);
   if (!keys) return fail(keys);
-  Result<StoredGrid> grid = describe(*keys);
+  Result<StoredGrid> grid = describe_mrtrix(*keys);
   if (!grid) return grid;
   if (Status status = store_samples(*keys, file, *grid); !status) return fail(status);
   return grid;

@@ -122,20 +122,10 @@ void read_version2(const Record& record, Fields& fields) {
   fields.intent = record.at<int32_t>(504);
 }
 
-bool is_packed(const FilePtr& file) {
-  const auto bytes = file->bytes();
-  return bytes.size() > 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
-}
-
-StreamPtr unpacked(const FilePtr& file) {
-  StreamPtr stream = std::make_unique<stream::MappedStream>(file);
-  return is_packed(file) ? std::make_unique<stream::InflateStream>(std::move(stream)) : std::move(stream);
-}
-
 /// The first bytes of a file, unpacked; fewer if it is shorter.
 std::vector<std::byte> head_of(const FilePtr& file) {
   std::vector<std::byte> head(kHeader2);
-  const Result<size_t> size = unpacked(file)->read(head);
+  const Result<size_t> size = stream::open_inflated(file)->read(head);
   head.resize(size.value_or(0));
   return head;
 }
@@ -276,7 +266,7 @@ std::string length_unit(int units) {
   return code < 4 ? kUnits[code] : "";
 }
 
-Result<StoredGrid> describe(const Fields& fields, std::optional<TensorOrder> order) {
+Result<StoredGrid> describe_nifti(const Fields& fields, std::optional<TensorOrder> order) {
   StoredGrid grid;
   grid.swapped = fields.swapped;
   grid.header.format = "NIfTI";
@@ -317,20 +307,20 @@ bool looks_like_nifti(std::span<const std::byte> head) {
 }
 
 bool looks_like_packed_nifti(const FilePtr& file) {
-  return is_packed(file) && looks_like_nifti(head_of(file));
+  return stream::is_gzip(file->bytes()) && looks_like_nifti(head_of(file));
 }
 
 Result<StoredGrid> parse_nifti(const GridFile& file) {
   const Result<Fields> fields = read_fields(head_of(file.file));
   if (!fields) return fail(fields);
-  Result<StoredGrid> grid = describe(*fields, file.order);
+  Result<StoredGrid> grid = describe_nifti(*fields, file.order);
   if (!grid) return grid;
   const Result<std::filesystem::path> path = fields->pair ? image_beside(file.path) : file.path;
   if (!path) return fail(path);
   Result<FilePtr> image = fields->pair ? stream::open_shared(*path) : Result<FilePtr>(file.file);
   if (!image) return fail(image);
   StoredSamples samples;
-  samples.packing = is_packed(*image) ? Packing::kInflate : Packing::kRaw;
+  samples.packing = stream::is_gzip((*image)->bytes()) ? Packing::kInflate : Packing::kRaw;
   samples.type = grid->header.type;
   samples.bytes = grid->header.samples() * grid->header.sample_bytes();
   samples.byte_skip = fields->data_offset;

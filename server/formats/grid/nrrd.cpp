@@ -13,7 +13,7 @@
 namespace surfcast::grid {
 namespace {
 
-Result<ScalarType> parse_type(std::string_view text) {
+Result<ScalarType> parse_nrrd_type(std::string_view text) {
   static const std::map<std::string, ScalarType, std::less<>> kTypes = {
       {"signed char", ScalarType::kInt8},
       {"int8", ScalarType::kInt8},
@@ -127,14 +127,14 @@ std::string unit_of(std::string_view text) {
   return std::string(text.substr(first + 1, text.find('"', first + 1) - first - 1));
 }
 
-Result<StoredGrid> describe(const NrrdFields& fields) {
+Result<StoredGrid> describe_nrrd(const NrrdFields& fields) {
   StoredGrid grid;
   GridHeader& header = grid.header;
   header.format = kNrrd;
   header.name = scan::printable(field(fields, "content"));
   const Result<NrrdSpace> space = parse_space(fields);
   if (!space) return fail(space);
-  const Result<ScalarType> type = parse_type(field(fields, "type"));
+  const Result<ScalarType> type = parse_nrrd_type(field(fields, "type"));
   if (!type) return fail(type);
   const Result<NrrdAxes> axes = parse_axes(fields, *space);
   if (!axes) return fail(axes);
@@ -155,7 +155,7 @@ Result<StoredGrid> describe(const NrrdFields& fields) {
 Result<StoredGrid> parse_nrrd(const GridFile& file) {
   const Result<NrrdText> text = split_nrrd(file.text());
   if (!text) return fail(text);
-  Result<StoredGrid> grid = describe(text->fields);
+  Result<StoredGrid> grid = describe_nrrd(text->fields);
   if (!grid) return grid;
   if (Status status = check_header(grid->header); !status) return fail(status);
   StoredSamples samples;

@@ -9,6 +9,9 @@
 
 namespace surfcast::grid {
 
+/// The format of all VTK files, in headers and in errors.
+inline constexpr std::string_view kVtk = "VTK";
+
 /// What a VTK file uses an array for, as far as it says.
 enum class VtkRole { kNone, kScalars, kColors, kNormals, kTensors };
 

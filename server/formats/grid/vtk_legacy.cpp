@@ -11,11 +11,9 @@
 namespace surfcast::grid {
 namespace {
 
-constexpr std::string_view kFormat = "VTK";
-
-Result<GridHeader> describe(const LegacyFile& file, const LegacyArray& array) {
+Result<GridHeader> describe_legacy(const LegacyFile& file, const LegacyArray& array) {
   GridHeader header;
-  header.format = kFormat;
+  header.format = kVtk;
   header.name = scan::printable(array.facts.name);
   header.type = array.numbers.type;
   const Result<SampleKind> kind = kind_of(array.facts);
@@ -40,7 +38,7 @@ Result<StoredGrid> parse_vtk_legacy(const GridFile& file) {
   const Result<size_t> chosen = choose_array(facts, file.array);
   if (!chosen) return fail(chosen);
   const LegacyArray& array = grid->arrays[*chosen];
-  Result<GridHeader> header = describe(*grid, array);
+  Result<GridHeader> header = describe_legacy(*grid, array);
   if (!header) return fail(header);
   StoredSamples samples;
   samples.packing = grid->binary ? Packing::kRaw : Packing::kText;

@@ -15,9 +15,7 @@ namespace {
 
 using scan::ScalarType;
 
-constexpr std::string_view kFormat = "VTK";
-
-Result<ScalarType> parse_type(std::string_view text) {
+Result<ScalarType> parse_legacy_type(std::string_view text) {
   static constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
       {"unsigned_char", ScalarType::kUint8}, {"char", ScalarType::kInt8},
       {"signed_char", ScalarType::kInt8},    {"unsigned_short", ScalarType::kUint16},
@@ -31,7 +29,7 @@ Result<ScalarType> parse_type(std::string_view text) {
   for (const auto& [known, type] : kTypes) {
     if (known == name) return type;
   }
-  return bad_header(kFormat, "type of numbers not supported", text);
+  return bad_header(kVtk, "type of numbers not supported", text);
 }
 
 /// VTK writes what is not a printable character of a name as "%20".
@@ -60,7 +58,7 @@ class LegacyParser {
     lines_.next();  // "# vtk DataFile Version"
     lines_.next();  // a title
     const std::string encoding = to_lower(next_filled_line());
-    if (encoding != "ascii" && encoding != "binary") return bad_header(kFormat, "neither ASCII nor BINARY", encoding);
+    if (encoding != "ascii" && encoding != "binary") return bad_header(kVtk, "neither ASCII nor BINARY", encoding);
     file_.binary = encoding == "binary";
     while (const std::optional<std::string_view> line = lines_.next()) {
       if (Status status = parse_line(*line); !status) return fail(status);
@@ -109,8 +107,8 @@ class LegacyParser {
 
   Status take_points(std::string_view line, const Words& words) {
     const auto count = scan::parse_number<uint64_t>(word(words, 1));
-    const Result<ScalarType> type = parse_type(word(words, 2));
-    if (!count) return bad_header(kFormat, "no number of points", line);
+    const Result<ScalarType> type = parse_legacy_type(word(words, 2));
+    if (!count) return bad_header(kVtk, "no number of points", line);
     if (!type) return fail(type);
     file_.points = {*type, stream::saturating(*count, 3, 0), lines_.offset()};
     return skip_numbers(file_.points.count, *type);
@@ -121,13 +119,13 @@ class LegacyParser {
     const auto first = scan::parse_number<uint64_t>(word(words, 1));
     const auto second = scan::parse_number<uint64_t>(word(words, 2));
     if (keyword == "offsets" || keyword == "connectivity") {
-      const Result<ScalarType> type = parse_type(word(words, 1));
+      const Result<ScalarType> type = parse_legacy_type(word(words, 1));
       if (!type) return fail(type);
       return skip_numbers(keyword == "offsets" ? offsets_ : connectivity_, *type);
     }
-    if (!first) return bad_header(kFormat, "no number of cells", line);
+    if (!first) return bad_header(kVtk, "no number of cells", line);
     if (keyword == "cell_types") return skip_numbers(*first, ScalarType::kInt32);
-    if (!second) return bad_header(kFormat, "no size of cells", line);
+    if (!second) return bad_header(kVtk, "no size of cells", line);
     HeaderLines ahead = lines_;
     const Words next = words_of(ahead.next().value_or(""));
     const bool by_offsets = !next.empty() && to_lower(next[0]) == "offsets";
@@ -149,21 +147,21 @@ class LegacyParser {
 
   Status take_dimensions(std::string_view line, const Words& words) {
     const auto counts = counts_of(line.substr(line.find(words[0]) + words[0].size()));
-    if (!counts || counts->size() != 3) return bad_header(kFormat, "wrong dimensions", line);
+    if (!counts || counts->size() != 3) return bad_header(kVtk, "wrong dimensions", line);
     std::copy_n(counts->begin(), 3, file_.dimensions.begin());
     return {};
   }
 
   static Status take_vector(std::string_view line, const Words& words, glm::dvec3& into) {
     const auto numbers = numbers_of(line.substr(line.find(words[0]) + words[0].size()));
-    if (!numbers || numbers->size() != 3) return bad_header(kFormat, "not three numbers", line);
+    if (!numbers || numbers->size() != 3) return bad_header(kVtk, "not three numbers", line);
     into = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
     return {};
   }
 
   Status begin_data(std::string_view line, const Words& words, bool of_cells) {
     const auto count = words.size() > 1 ? scan::parse_number<uint64_t>(words[1]) : std::nullopt;
-    if (!count) return bad_header(kFormat, "no number of samples", line);
+    if (!count) return bad_header(kVtk, "no number of samples", line);
     tuples_ = *count;
     of_cells_ = of_cells;
     in_data_ = true;
@@ -199,7 +197,7 @@ class LegacyParser {
     if (keyword == "tensors") return add_typed("9", VtkRole::kTensors);
     if (keyword == "tensors6") return add_typed("6", VtkRole::kTensors);
     if (keyword == "global_ids" || keyword == "pedigree_ids") return add_typed("1", VtkRole::kNone);
-    return bad_header(kFormat, "line not understood", line);
+    return bad_header(kVtk, "line not understood", line);
   }
 
   /// The line "LOOKUP_TABLE name" between SCALARS and the numbers, which old writers leave out.
@@ -213,14 +211,14 @@ class LegacyParser {
   /// Four numbers a colour; bytes in binary files.
   Status skip_lookup_table(std::string_view line, std::string_view size) {
     const auto count = scan::parse_number<uint64_t>(size);
-    if (!count) return bad_header(kFormat, "no size of a lookup table", line);
+    if (!count) return bad_header(kVtk, "no size of a lookup table", line);
     return skip_numbers(stream::saturating(*count, 4, 0), file_.binary ? ScalarType::kUint8 : ScalarType::kFloat32);
   }
 
   /// Arrays with lines "name components tuples type".
   Status parse_fields(std::string_view line, std::string_view count_text) {
     const auto count = scan::parse_number<uint64_t>(count_text);
-    if (!count) return bad_header(kFormat, "no number of arrays", line);
+    if (!count) return bad_header(kVtk, "no number of arrays", line);
     for (uint64_t i = 0; i < *count;) {
       const std::optional<std::string_view> next = lines_.next();
       if (!next) return fail(ErrorKind::kInvalidInput, "truncated: the VTK file ends within its arrays");
@@ -231,7 +229,7 @@ class LegacyParser {
         continue;
       }
       const auto tuples = words.size() == 4 ? scan::parse_number<uint64_t>(words[2]) : std::nullopt;
-      if (!tuples) return bad_header(kFormat, "array not understood", *next);
+      if (!tuples) return bad_header(kVtk, "array not understood", *next);
       if (Status status = add(*next, words[0], words[1], words[3], *tuples); !status) return status;
       ++i;
     }
@@ -242,8 +240,8 @@ class LegacyParser {
   Status add(std::string_view line, std::string_view name, std::string_view components, std::string_view type_name,
              uint64_t tuples, VtkRole role = VtkRole::kNone) {
     const auto count = scan::parse_number<uint64_t>(components);
-    const Result<ScalarType> type = parse_type(type_name);
-    if (!count || *count == 0) return bad_header(kFormat, "no number of components", line);
+    const Result<ScalarType> type = parse_legacy_type(type_name);
+    if (!count || *count == 0) return bad_header(kVtk, "no number of components", line);
     if (!type) return fail(type);
     const VtkNumbers numbers{*type, stream::saturating(*count, tuples, 0), lines_.offset()};
     if (Status status = skip_numbers(numbers.count, *type); !status) return status;

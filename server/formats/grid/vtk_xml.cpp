@@ -10,12 +10,10 @@
 namespace surfcast::grid {
 namespace {
 
-constexpr std::string_view kFormat = "VTK";
-
 Result<std::vector<double>> parse_numbers(std::string_view text, std::vector<double> fallback) {
   if (text.empty()) return fallback;
   auto numbers = numbers_of(text);
-  if (!numbers || numbers->size() != fallback.size()) return bad_header(kFormat, "wrong numbers", text);
+  if (!numbers || numbers->size() != fallback.size()) return bad_header(kVtk, "wrong numbers", text);
   return std::move(*numbers);
 }
 
@@ -51,7 +49,7 @@ Result<VtkExtent> find_extent(const XmlFile& image) {
   return extent;
 }
 
-Result<GridHeader> describe(const XmlFile& image, const VtkArray& facts, const XmlArray& array) {
+Result<GridHeader> describe_vtk_xml(const XmlFile& image, const VtkArray& facts, const XmlArray& array) {
   const Result<VtkExtent> extent = find_extent(image);
   if (!extent) return fail(extent);
   Result<glm::dmat4x3> of_points = parse_affine(image.data_set);
@@ -59,7 +57,7 @@ Result<GridHeader> describe(const XmlFile& image, const VtkArray& facts, const X
   const Result<ScalarType> type = xml_type_of(array);
   if (!type) return fail(type);
   GridHeader header;
-  header.format = kFormat;
+  header.format = kVtk;
   header.name = scan::printable(facts.name);
   header.type = *type;
   header.kind = kind_of(facts).value_or(SampleKind::kScalar);
@@ -82,7 +80,7 @@ Result<StoredGrid> parse_vtk_xml(const GridFile& file) {
   const Result<size_t> chosen = choose_array(facts, file.array);
   if (!chosen) return fail(chosen);
   const XmlArray& array = image->arrays[*chosen];
-  Result<GridHeader> header = describe(*image, facts[*chosen], array);
+  Result<GridHeader> header = describe_vtk_xml(*image, facts[*chosen], array);
   if (!header) return fail(header);
   Result<StoredNumbers> numbers = find_numbers(*image, array, file.file, header->samples() * header->components());
   if (!numbers) return fail(numbers);

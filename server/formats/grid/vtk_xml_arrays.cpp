@@ -12,8 +12,6 @@
 namespace surfcast::grid {
 namespace {
 
-constexpr std::string_view kFormat = "VTK";
-
 Result<VtkBlockCoding> parse_coding(const XmlFile& file) {
   VtkBlockCoding coding;
   const std::string_view compressor = attribute(file.file, "compressor");
@@ -23,7 +21,7 @@ Result<VtkBlockCoding> parse_coding(const XmlFile& file) {
   }
   const std::string_view width = attribute(file.file, "header_type");
   coding.wide = width == "UInt64";
-  if (!width.empty() && width != "UInt64" && width != "UInt32") return bad_header(kFormat, "type of headers", width);
+  if (!width.empty() && width != "UInt64" && width != "UInt32") return bad_header(kVtk, "type of headers", width);
   const bool big = attribute(file.file, "byte_order") == "BigEndian";
   coding.swapped = big != (std::endian::native == std::endian::big);
   return coding;
@@ -34,7 +32,7 @@ Status find_appended(const XmlFile& file, const XmlArray& array, StoredNumbers& 
   const std::string_view text = attribute(array.attributes, "offset");
   const auto offset = scan::parse_number<uint64_t>(text);
   const uint64_t rest = file.appended_end - file.appended_begin;
-  if (!offset || *offset > rest) return bad_header(kFormat, "an offset beyond the file", text);
+  if (!offset || *offset > rest) return bad_header(kVtk, "an offset beyond the file", text);
   numbers.base64 = file.appended_base64;
   numbers.begin = file.appended_begin + *offset;
   numbers.size = rest - *offset;
@@ -54,12 +52,12 @@ Result<VtkExtent> parse_vtk_extent(std::string_view text) {
   const std::vector<std::string_view> words = words_of(text);
   for (size_t i = 0; i < 6 && words.size() == 6; ++i) {
     const auto index = scan::parse_number<int32_t>(words[i]);
-    if (!index) return bad_header(kFormat, "not an extent", text);
+    if (!index) return bad_header(kVtk, "not an extent", text);
     (i % 2 == 0 ? extent.first : extent.last)[i / 2] = *index;
   }
-  if (words.size() != 6) return bad_header(kFormat, "not an extent", text);
+  if (words.size() != 6) return bad_header(kVtk, "not an extent", text);
   for (size_t axis = 0; axis < 3; ++axis) {
-    if (extent.last[axis] < extent.first[axis]) return bad_header(kFormat, "an extent without samples", text);
+    if (extent.last[axis] < extent.first[axis]) return bad_header(kVtk, "an extent without samples", text);
   }
   return extent;
 }
@@ -94,7 +92,7 @@ Result<scan::ScalarType> xml_type_of(const XmlArray& array) {
   for (const auto& [known, type] : kTypes) {
     if (known == text) return type;
   }
-  return bad_header(kFormat, "type of numbers not supported", text);
+  return bad_header(kVtk, "type of numbers not supported", text);
 }
 
 Result<StoredNumbers> find_numbers(const XmlFile& file, const XmlArray& array, const stream::FilePtr& source,
@@ -117,7 +115,7 @@ Result<StoredNumbers> find_numbers(const XmlFile& file, const XmlArray& array, c
     if (Status status = find_appended(file, array, numbers); !status) return fail(status);
     return numbers;
   }
-  if (format != "binary") return bad_header(kFormat, "format of an array not supported", format);
+  if (format != "binary") return bad_header(kVtk, "format of an array not supported", format);
   numbers.base64 = true;
   return numbers;
 }

@@ -37,11 +37,11 @@ tl::unexpected<Error> bad_grid(const std::string& what) {
   return fail(ErrorKind::kInvalidInput, "ASCII grid: " + what);
 }
 
-/// The values of a header by the places of their names in kNames.
-constexpr std::array<std::string_view, 10> kNames = {"ncols",     "nrows",    "xllcorner", "xllcenter", "yllcorner",
-                                                     "yllcenter", "cellsize", "dx",        "dy",        "nodata_value"};
+/// The values of a header by the places of their names in kHeaderNames.
+constexpr std::array<std::string_view, 10> kHeaderNames = {
+    "ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"};
 enum Name { kColumns, kRows, kLeft, kLeftMiddle, kBottom, kBottomMiddle, kStep, kStepX, kStepY, kNoValue };
-using HeaderValues = std::array<std::optional<double>, kNames.size()>;
+using HeaderValues = std::array<std::optional<double>, kHeaderNames.size()>;
 
 /// Reads names and their numbers up to the first word that is no name.
 Result<HeaderValues> read_values(Tokens& tokens) {
@@ -49,12 +49,12 @@ Result<HeaderValues> read_values(Tokens& tokens) {
   while (true) {
     Tokens ahead = tokens;
     const std::string word = to_lower(ahead.next());
-    const auto* const name = std::find(kNames.begin(), kNames.end(), word);
-    if (name == kNames.end()) return values;
+    const auto* const name = std::find(kHeaderNames.begin(), kHeaderNames.end(), word);
+    if (name == kHeaderNames.end()) return values;
     const std::string_view number = ahead.next();
     const std::optional<double> value = parse_number<double>(number);
     if (!value) return bad_grid(word + " is not a number: " + printable(number));
-    values.at(static_cast<size_t>(name - kNames.begin())) = *value;
+    values.at(static_cast<size_t>(name - kHeaderNames.begin())) = *value;
     tokens = ahead;
   }
 }
@@ -62,9 +62,9 @@ Result<HeaderValues> read_values(Tokens& tokens) {
 /// A number of cells. Their product with another one fits into 64 bits.
 Result<uint64_t> count_of(const HeaderValues& values, Name name) {
   const std::optional<double>& value = values.at(name);
-  if (!value) return bad_grid(std::string(kNames.at(name)) + " is missing");
+  if (!value) return bad_grid(std::string(kHeaderNames.at(name)) + " is missing");
   if (!(*value >= 1 && *value <= double{UINT32_MAX} && std::floor(*value) == *value)) {
-    return bad_grid(std::string(kNames.at(name)) + " is not a number of cells");
+    return bad_grid(std::string(kHeaderNames.at(name)) + " is not a number of cells");
   }
   return static_cast<uint64_t>(*value);
 }
@@ -81,8 +81,8 @@ Result<double> first_of(const HeaderValues& values, Name corner, Name middle, do
   const std::optional<double> first =
       values.at(middle) ? values.at(middle)
                         : (values.at(corner) ? std::optional(*values.at(corner) + step / 2) : std::nullopt);
-  if (!first) return bad_grid(std::string(kNames.at(corner)) + " is missing");
-  if (!std::isfinite(*first)) return bad_grid(std::string(kNames.at(corner)) + " is not finite");
+  if (!first) return bad_grid(std::string(kHeaderNames.at(corner)) + " is missing");
+  if (!std::isfinite(*first)) return bad_grid(std::string(kHeaderNames.at(corner)) + " is not finite");
   return *first;
 }
 
@@ -214,7 +214,7 @@ class AsciiGridRows : public RowSource {
 
 bool looks_like_ascii_grid(std::string_view text) {
   Tokens tokens(text.substr(0, 256));
-  return to_lower(tokens.next()) == kNames[kColumns] && parse_number<double>(tokens.next());
+  return to_lower(tokens.next()) == kHeaderNames[kColumns] && parse_number<double>(tokens.next());
 }
 
 std::filesystem::path projection_file(const std::filesystem::path& grid) {

@@ -57,15 +57,15 @@ struct SubtreeParts {
 };
 
 Result<SubtreeParts> split_subtree(Bytes bytes) {
-  constexpr size_t kHeader = 24;
+  constexpr size_t kSubtreeHeader = 24;
   Bytes text = bytes;
   Bytes binary;
   if (as_text(bytes).starts_with("subt")) {
-    if (bytes.size() < kHeader) return invalid_input("truncated: the header of a subtree");
+    if (bytes.size() < kSubtreeHeader) return invalid_input("truncated: the header of a subtree");
     if (load<uint32_t>(&bytes[4]) != 1) return fail(ErrorKind::kUnsupported, "a subtree of an unknown version");
     const auto json_bytes = load<uint64_t>(&bytes[8]);
     const auto binary_bytes = load<uint64_t>(&bytes[16]);
-    const Bytes rest = bytes.subspan(kHeader);
+    const Bytes rest = bytes.subspan(kSubtreeHeader);
     if (json_bytes > rest.size() || binary_bytes > rest.size() - json_bytes) {
       return invalid_input("truncated: a subtree shorter than it states");
     }

@@ -9,7 +9,7 @@
 namespace surfcast::scan {
 namespace {
 
-constexpr size_t kDeepest = 64;
+constexpr size_t kDeepestElement = 64;
 
 struct TreeBuilder {
   XML_Parser parser = nullptr;
@@ -25,7 +25,7 @@ struct TreeBuilder {
 
 void XMLCALL start_element(void* data, const XML_Char* name, const XML_Char** attributes) {
   auto& builder = *static_cast<TreeBuilder*>(data);
-  if (builder.open.size() > kDeepest) return builder.stop("its elements are nested too deeply");
+  if (builder.open.size() > kDeepestElement) return builder.stop("its elements are nested too deeply");
   // The parents of an element get no other child before it is closed, so that pointers to them stay valid.
   XmlNode& node = builder.open.back()->children.emplace_back();
   node.name = name;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/ascii_text.h"
+
 namespace surfcast::command_line {
 namespace {
 
@@ -25,12 +27,6 @@ std::vector<std::string> choices_of(std::string_view type) {
   }
   const bool listed = type.find('|') != std::string_view::npos && type.find(':') == std::string_view::npos;
   return listed ? split(type, '|') : std::vector<std::string>{};
-}
-
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
-  return text;
 }
 
 std::string value_of(const std::string& type, const std::vector<std::string>& choices) {

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
+#include "geometry/finite.h"
+
 namespace surfcast::geometry {
 namespace {
-
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 glm::dvec3 least_aligned_axis(const glm::dvec3& direction) {
   const glm::dvec3 a = glm::abs(direction);

@@ -10,8 +10,8 @@ namespace surfcast::stream {
 namespace {
 
 /// A block of 900,000 bytes of runs of up to 255 (5 bytes each) takes at least some 40 bytes.
-constexpr uint64_t kLargestBlock = uint64_t{900000} / 5 * 255;
-constexpr uint64_t kSmallestBlock = 32;
+constexpr uint64_t kLargestBzip2Block = uint64_t{900000} / 5 * 255;
+constexpr uint64_t kSmallestBzip2Block = 32;
 
 }  // namespace
 
@@ -25,7 +25,8 @@ Bzip2Stream::~Bzip2Stream() {
 
 uint64_t Bzip2Stream::at_most() const {
   if (ended_) return 0;
-  return saturating((source_->at_most() + state_.avail_in) / kSmallestBlock + 1, kLargestBlock, kLargestBlock);
+  return saturating((source_->at_most() + state_.avail_in) / kSmallestBzip2Block + 1, kLargestBzip2Block,
+                    kLargestBzip2Block);
 }
 
 Status Bzip2Stream::refill() {

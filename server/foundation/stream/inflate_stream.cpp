@@ -83,4 +83,13 @@ Result<size_t> InflateStream::read(std::span<std::byte> out) {
   return done;
 }
 
+bool is_gzip(std::span<const std::byte> bytes) {
+  return bytes.size() > 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
+}
+
+StreamPtr open_inflated(const FilePtr& file) {
+  StreamPtr stream = std::make_unique<MappedStream>(file);
+  return is_gzip(file->bytes()) ? std::make_unique<InflateStream>(std::move(stream)) : std::move(stream);
+}
+
 }  // namespace surfcast::stream

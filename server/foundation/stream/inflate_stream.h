@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include "stream/byte_stream.h"
+#include "stream/mapped_stream.h"
 
 namespace surfcast::stream {
 
@@ -26,5 +27,11 @@ class InflateStream final : public ByteStream {
   bool ended_ = false;
   std::array<std::byte, size_t{1} << 14> input_;
 };
+
+/// Whether data begins like that of gzip.
+[[nodiscard]] bool is_gzip(std::span<const std::byte> bytes);
+
+/// The content of a file, decompressed where gzip has compressed it.
+[[nodiscard]] StreamPtr open_inflated(const FilePtr& file);
 
 }  // namespace surfcast::stream

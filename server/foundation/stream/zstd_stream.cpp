@@ -14,8 +14,8 @@ namespace {
 constexpr int kLargestWindow = 27;
 
 /// A block of 128 KiB takes at least 4 bytes (RFC 8878, RLE_Block).
-constexpr uint64_t kLargestBlock = uint64_t{1} << 17;
-constexpr uint64_t kSmallestBlock = 4;
+constexpr uint64_t kLargestZstdBlock = uint64_t{1} << 17;
+constexpr uint64_t kSmallestZstdBlock = 4;
 
 }  // namespace
 
@@ -29,9 +29,9 @@ ZstdStream::~ZstdStream() {
 }
 
 uint64_t ZstdStream::at_most() const {
-  const uint64_t blocks = (source_->at_most() + (filled_ - used_)) / kSmallestBlock;
+  const uint64_t blocks = (source_->at_most() + (filled_ - used_)) / kSmallestZstdBlock;
   // A decoder at work may still hold a window of bytes.
-  return saturating(blocks, kLargestBlock, filled_ > 0 ? uint64_t{1} << kLargestWindow : 0);
+  return saturating(blocks, kLargestZstdBlock, filled_ > 0 ? uint64_t{1} << kLargestWindow : 0);
 }
 
 Result<size_t> ZstdStream::read(std::span<std::byte> out) {

@@ -9,7 +9,7 @@
 namespace surfcast::ellipsoid {
 namespace {
 
-constexpr uint64_t kRun = 16384;  // samples that are read at once
+constexpr uint64_t kSamplesAtOnce = 16384;
 
 using grid::SampleKind;
 
@@ -62,7 +62,7 @@ class GridTensors final : public EllipsoidInput {
 
   Result<Ellipsoids> read(model::EllipsoidCounts& counts) override {
     const uint64_t first = reader_.position();
-    const uint64_t count = std::min(kRun, header().samples() - first);
+    const uint64_t count = std::min(kSamplesAtOnce, header().samples() - first);
     values_.resize(count * header().components());
     if (Status status = reader_.read(values_); !status) return fail(status);
     samples_.clear();

@@ -15,7 +15,7 @@ namespace {
 
 using scan::ScalarType;
 
-constexpr uint64_t kRun = 16384;  // points that are read at once
+constexpr uint64_t kPointsAtOnce = 16384;
 
 /// Points and tensors of a file.
 struct PointSet {
@@ -87,7 +87,7 @@ class VtkTensors final : public EllipsoidInput {
 
   Result<Ellipsoids> read(model::EllipsoidCounts& counts) override {
     std::vector<TensorSample> samples;
-    const uint64_t end = std::min(position_ + kRun, samples_of_file());
+    const uint64_t end = std::min(position_ + kPointsAtOnce, samples_of_file());
     for (; position_ < end; ++position_) {
       TensorSample sample;
       std::array<double, 9> components{};

@@ -201,10 +201,6 @@ bool has_magic(std::span<const std::byte> bytes) {
   return bytes.size() >= 4 && scan::load<uint32_t>(bytes.data()) == kMagic;
 }
 
-bool is_gzip(std::span<const std::byte> bytes) {
-  return bytes.size() > 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
-}
-
 /// Some writers put extensions before the columns, where no length tells how far they reach; others put them behind.
 Status check_extensions(const SpzHeader& header, stream::ByteStream& after_header) {
   if ((header.flags & kExtensions) == 0) return {};
@@ -317,7 +313,7 @@ Result<SourcePtr> open_clear(const stream::FilePtr& file) {
 
 bool looks_like_spz(const stream::FilePtr& file) {
   if (has_magic(file->bytes())) return true;
-  if (!is_gzip(file->bytes())) return false;
+  if (!stream::is_gzip(file->bytes())) return false;
   std::array<std::byte, 4> head{};
   return inflated(file)->read(head).value_or(0) == head.size() && has_magic(head);
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/invalid_input.h"
+#include "geometry/finite.h"
 #include "mesh/gltf_materials.h"
 #include "mesh/gltf_triangles.h"
 #include "mesh/model_files.h"
@@ -19,10 +20,6 @@ namespace {
 
 /// Extensions of textures that are read.
 constexpr std::array<std::string_view, 2> kRead{"EXT_texture_webp", "KHR_texture_transform"};
-
-bool finite(const glm::dvec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 /// A primitive, ready for any number of instances.
 struct Primitive {
@@ -110,7 +107,7 @@ Status GltfModel::add_node(const Json& node, const glm::dmat4& to_world) {
   const Result<const std::vector<Primitive>*> primitives = primitives_of(*number);
   if (!primitives) return fail(primitives);
   for (const Primitive& primitive : **primitives) {
-    const auto inside = [&](const glm::dvec3& p) { return finite(glm::dvec3(to_world * glm::dvec4(p, 1))); };
+    const auto inside = [&](const glm::dvec3& p) { return geometry::finite(glm::dvec3(to_world * glm::dvec4(p, 1))); };
     const std::vector<glm::dvec3>& positions = primitive.parts.vertices->positions;
     if (!std::all_of(positions.begin(), positions.end(), inside)) {
       return invalid_input("glTF mesh with a position that is not finite");

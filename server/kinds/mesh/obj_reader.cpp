@@ -11,6 +11,7 @@
 #define TINYOBJLOADER_USE_DOUBLE
 #include <tiny_obj_loader.h>
 
+#include "geometry/finite.h"
 #include "mesh/model_files.h"
 #include "mesh/readers.h"
 #include "scan/text_tokens.h"
@@ -194,10 +195,6 @@ Material material_of(const tinyobj::material_t& stated, NamedImages& images) {
   return material;
 }
 
-bool finite(const glm::dvec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 /// An index of the library, which is -1 where the file states none.
 Result<uint32_t> index_of(int stated, size_t count) {
   if (stated == -1) return kNone;
@@ -212,7 +209,7 @@ Result<Corner> corner_of(const tinyobj::index_t& stated, const Vertices& vertice
   for (const Result<uint32_t>* index : {&position, &normal, &uv}) {
     if (!*index) return fail(*index);
   }
-  if (*position == kNone || !finite(vertices.positions[*position])) {
+  if (*position == kNone || !geometry::finite(vertices.positions[*position])) {
     return fail(ErrorKind::kInvalidInput, "OBJ face with a corner without a position");
   }
   return Corner{*position, *normal, *uv};

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/finite.h"
 #include "mesh/readers.h"
 #include "scan/text_tokens.h"
 
@@ -27,10 +28,6 @@ struct Soup {
   }
 };
 
-bool finite(const glm::dvec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 Result<Soup> read_binary(std::span<const std::byte> bytes) {
   Soup soup;
   for (size_t at = kHeader; at + kRecord <= bytes.size(); at += kRecord) {
@@ -38,7 +35,7 @@ Result<Soup> read_binary(std::span<const std::byte> bytes) {
     std::memcpy(numbers.data(), bytes.data() + at, sizeof numbers);
     std::array<glm::dvec3, 3> corners{};
     for (size_t k = 0; k < 3; ++k) corners[k] = {numbers[3 * k + 3], numbers[3 * k + 4], numbers[3 * k + 5]};
-    if (!finite(corners[0]) || !finite(corners[1]) || !finite(corners[2])) {
+    if (!geometry::finite(corners[0]) || !geometry::finite(corners[1]) || !geometry::finite(corners[2])) {
       return fail(ErrorKind::kInvalidInput, "STL triangle with a corner that is not finite");
     }
     soup.add(corners);

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/hash.h"
+#include "geometry/finite.h"
 #include "ldc/lattice.h"
 #include "model/byte_stream.h"
 #include "model/kind_tables.h"
@@ -99,12 +100,9 @@ std::optional<BlockRecord> get_block(ByteReader& reader) {
   return block;
 }
 
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 bool valid_grid(const surfel::Grid& grid) {
-  return finite(grid.scale) && finite(grid.offset) && grid.scale.x > 0 && grid.scale.y > 0 && grid.scale.z > 0;
+  return geometry::finite(grid.scale) && geometry::finite(grid.offset) && grid.scale.x > 0 && grid.scale.y > 0 &&
+         grid.scale.z > 0;
 }
 
 bool valid_lattice_box(const BlockRecord& block, const surfel::Grid& grid) {
@@ -113,7 +111,8 @@ bool valid_lattice_box(const BlockRecord& block, const surfel::Grid& grid) {
   for (int axis = 0; axis < 3; ++axis) {
     if (block.extent[axis] >= kExtent || block.origin[axis] > kOrigin || block.origin[axis] < -kOrigin) return false;
   }
-  return finite(grid.position(block.origin)) && finite(grid.position(block.origin + glm::i64vec3(block.extent)));
+  return geometry::finite(grid.position(block.origin)) &&
+         geometry::finite(grid.position(block.origin + glm::i64vec3(block.extent)));
 }
 
 bool valid_block(const BlockRecord& block, const Directory& directory, const ModelHeader& header) {
