@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "base/json_text.h"
+
 namespace surfcast::client {
 namespace {
 
@@ -191,7 +193,7 @@ std::string to_json(const BenchReport& report, const std::string& url) {
                         {"bytes", to_json(report.rest_bytes)},
                         {"unconverged", report.unconverged},
                         {"frames_after_converged", report.late}}}};
-  return document.dump(2) + "\n";
+  return json_text(document, 2) + "\n";
 }
 
 }  // namespace surfcast::client

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json_text.h"
 #include "client/commands.h"
 #include "client/time_limits.h"
 
@@ -61,7 +62,7 @@ Status list_models(const ModelsCommand& command, int interrupt) {
   const Result<wire::ModelList> list = ask_for_models(*server, command.limits.config(*server, interrupt));
   if (!list) return fail(list);
   if (command.json) {
-    std::cout << to_json(*list).dump(2) << '\n';
+    std::cout << json_text(to_json(*list), 2) << '\n';
   } else {
     for (const std::string& name : list->models()) std::cout << name << '\n';
   }

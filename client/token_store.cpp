@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 
 namespace surfcast::client {
 namespace {
@@ -22,7 +23,7 @@ std::string key_of(const protocol::Endpoint& server) {
 /// An object of tokens by server; an empty one if there is no such file.
 json read_store(const fs::path& store) {
   std::ifstream stream(store);
-  json tokens = json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  json tokens = parse_json_text(std::string(std::istreambuf_iterator<char>(stream), {}));
   return tokens.is_object() ? tokens : json::object();
 }
 
@@ -53,7 +54,7 @@ Status store_token(const fs::path& store, const protocol::Endpoint& server, cons
   std::error_code code;
   fs::create_directories(store.parent_path(), code);
   const mode_t former = ::umask(S_IRWXG | S_IRWXO);  // from its first byte on
-  Status written = write_file_atomically(store, tokens.dump(2) + "\n");
+  Status written = write_file_atomically(store, json_text(tokens, 2) + "\n");
   ::umask(former);
   return written;
 }

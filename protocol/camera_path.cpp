@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "base/mapped_file.h"
 #include "protocol/picture_fields.h"
 #include "protocol/request_flags.h"
@@ -111,7 +112,7 @@ Result<Keyframe> read_keyframe(json document, size_t number) {
   keyframe.time = document["time"].get<double>();
   document.erase("time");
   if (!std::isfinite(keyframe.time)) return invalid_input(name + "the time must be finite");
-  Status status = parse_camera_json(document.dump(), keyframe.camera);
+  Status status = parse_camera_json(json_text(document), keyframe.camera);
   if (status) status = check_camera(keyframe.camera);
   if (!status) return invalid_input(name + status.error().message);
   return keyframe;
@@ -159,7 +160,7 @@ Status check_order(const std::vector<Keyframe>& keyframes) {
 }  // namespace
 
 Result<CameraPath> CameraPath::parse(std::string_view text, double seconds_per_view) {
-  const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const json document = parse_json_text(text);
   const auto has_array = [&](const char* name) {
     return document.is_object() && document.contains(name) && document[name].is_array();
   };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "base/mapped_file.h"
 
 namespace surfcast::protocol {
@@ -48,7 +49,7 @@ Status read_light(const json& object, wire::Light& light) {
 }  // namespace
 
 Status parse_lights_json(std::string_view text, wire::Lighting& lighting) {
-  const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const json document = parse_json_text(text);
   if (!document.is_object()) return invalid_input("not a JSON object");
   const std::optional<double> ambient = number_in(document, "ambient", 0);
   const std::optional<double> specular = number_in(document, "specular", 0);

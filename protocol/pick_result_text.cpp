@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
+
 namespace surfcast::protocol {
 namespace {
 
@@ -30,17 +32,13 @@ Json document_of(const wire::PickResult& result) {
   return document;
 }
 
-std::string dump(const Json& value, int indent = -1) {
-  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
 /// A value as text: "yes" or "no" for a boolean, numbers separated by blanks for a vector.
 std::string plain(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (!value.is_array()) return dump(value);
+  if (!value.is_array()) return json_text(value);
   std::string text;
-  for (const Json& part : value) text += (text.empty() ? "" : " ") + dump(part);
+  for (const Json& part : value) text += (text.empty() ? "" : " ") + json_text(part);
   return text;
 }
 
@@ -60,7 +58,7 @@ std::string pick_result_text(const wire::PickResult& result) {
 }
 
 std::string pick_result_json(const wire::PickResult& result) {
-  return dump(document_of(result), 2) + "\n";
+  return json_text(document_of(result), 2) + "\n";
 }
 
 }  // namespace surfcast::protocol

@@ -9,6 +9,7 @@
 
 #include "base/ascii_text.h"
 #include "base/contract.h"
+#include "base/json_text.h"
 #include "base/mapped_file.h"
 #include "protocol/camera_path.h"
 #include "protocol/film.h"
@@ -96,7 +97,7 @@ std::string environment_name(std::string_view flag) {
 }
 
 Status parse_camera_json(std::string_view text, wire::Camera& camera) {
-  const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const json document = parse_json_text(text);
   if (!document.is_object()) return fail(ErrorKind::kInvalidInput, "not a JSON object");
   for (const auto& [key, value] : document.items()) {
     if (!read_camera_field(key, value, camera)) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "protocol/camera_path.h"
 #include "protocol/film.h"
 #include "protocol/picture_fields.h"
@@ -95,7 +96,7 @@ std::string picture_stats_json(const wire::Picture& picture) {
     document["expected_error"] = picture.expected_error();
     document["expected_ms"] = picture.expected_ms();
   }
-  return document.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return json_text(document, 2) + "\n";
 }
 
 Status save_picture(const wire::Picture& picture, const std::string& output, const std::string& stats) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "base/mapped_file.h"
 #include "protocol/volume_fields.h"
 
@@ -90,7 +91,7 @@ Status read_points(const json& document, wire::TransferFunction& transfer) {
 }  // namespace
 
 Status parse_transfer_json(std::string_view text, wire::TransferFunction& transfer) {
-  const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const json document = parse_json_text(text);
   if (!document.is_object()) return invalid_input("not a JSON object");
   wire::TransferFunction read;
   Status status = document.contains("preset") ? read_preset(document, read) : read_points(document, read);

@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "base/log.h"
 #include "builder/append_model.h"
 #include "builder/build_model.h"
@@ -288,8 +289,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
   }
   if (command.simplify && report.simplified) json["simplify"] = to_json(*command.simplify, *report.simplified);
   for (const std::filesystem::path& input : command.inputs) json["inputs"].push_back(input.string());
-  // File names need not be UTF-8.
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 /// An error if surfaces are wanted and no input has any. What does not exist is an error of reading.

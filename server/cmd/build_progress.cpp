@@ -6,6 +6,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "base/json_text.h"
+
 namespace surfcast::cmd {
 namespace {
 
@@ -16,9 +18,9 @@ std::string terminal_text(const builder::BuildOutlook& outlook) {
   return outlook.seconds_left > 0 ? text + fmt::format(", {:.0f} s left", outlook.seconds_left) : text;
 }
 
-std::string json_text(const builder::BuildOutlook& outlook) {
-  return nlohmann::json{{"stage", outlook.stage}, {"done", outlook.done}, {"seconds_left", outlook.seconds_left}}
-      .dump();
+std::string outlook_text(const builder::BuildOutlook& outlook) {
+  return json_text(
+      nlohmann::json{{"stage", outlook.stage}, {"done", outlook.done}, {"seconds_left", outlook.seconds_left}});
 }
 
 }  // namespace
@@ -47,7 +49,7 @@ void BuildProgressReport::report() {
   std::unique_lock lock(mutex_);
   while (!wake_.wait_for(lock, kInterval, [this] { return ended_; })) {
     const builder::BuildOutlook outlook = forecast_.outlook(since_.seconds());
-    const std::string text = style_ == ProgressStyle::kJson ? json_text(outlook) : terminal_text(outlook);
+    const std::string text = style_ == ProgressStyle::kJson ? outlook_text(outlook) : terminal_text(outlook);
     if (text == shown_) continue;
     shown_ = text;
     std::cerr << (style_ == ProgressStyle::kJson ? text + "\n" : "\r\033[K" + text) << std::flush;

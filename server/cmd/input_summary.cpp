@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/json_text.h"
 #include "builder/grid_input.h"
 #include "builder/input_files.h"
 #include "ellipsoid/ellipsoid_input.h"
@@ -102,7 +103,7 @@ Result<Facts> facts_of(const std::filesystem::path& path) {
 std::string text_of(const Facts& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (!value.is_array()) return value.dump();
+  if (!value.is_array()) return json_text(value);
   std::string text;
   for (const Facts& part : value) {
     text += (text.empty() ? "" : (part.is_string() ? ", " : " ")) + text_of(part);
@@ -117,7 +118,7 @@ Result<std::string> summarize_input(const std::filesystem::path& path, bool json
   if (!facts) return fail(facts);
   Facts all{{"input", path.string()}, {"bytes", builder::bytes_of_input(path)}};
   all.update(*facts);
-  if (json) return all.dump(2, ' ', false, Facts::error_handler_t::replace) + "\n";
+  if (json) return json_text(all, 2) + "\n";
   std::string lines;
   for (const auto& [name, value] : all.items()) lines += name + ": " + text_of(value) + "\n";
   return lines;

@@ -9,6 +9,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "base/ascii_text.h"
+#include "base/json_text.h"
 #include "cmd/georeference_text.h"
 #include "model/volume_facts.h"
 
@@ -177,9 +178,8 @@ nlohmann::ordered_json json_of(const ModelSummary& summary) {
   return json;
 }
 
-/// Names come from files and need not be UTF-8.
 std::string dumped(const nlohmann::ordered_json& json) {
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace

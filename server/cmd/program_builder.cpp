@@ -9,6 +9,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "base/child_process.h"
+#include "base/json_text.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/scratch_folder.h"
@@ -77,7 +78,7 @@ class ProgramBuilder : public ScanBuilder {
     const Result<MappedFile> file = MappedFile::open(report);
     if (!file) return 0;
     const auto* text = reinterpret_cast<const char*>(file->bytes().data());
-    const nlohmann::json json = nlohmann::json::parse(text, text + file->bytes().size(), nullptr, false);
+    const nlohmann::json json = parse_json_text({text, file->bytes().size()});
     return json.is_object() ? json.value("points_in_scans", uint64_t{0}) : 0;
   }
 
@@ -92,7 +93,7 @@ void BuildOutput::take(std::string_view line) {
     problem_ = line.substr(kFailurePrefix.size());
     return;
   }
-  const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
+  const nlohmann::json json = parse_json_text(line);
   if (json.is_object() && json.contains("done")) {
     watch_.progress(json.value("done", 0.0), json.value("seconds_left", 0.0));
   } else if (line.find("warn") != std::string_view::npos) {

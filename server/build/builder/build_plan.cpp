@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/hash.h"
+#include "base/json_text.h"
 #include "builder/input_files.h"
 
 namespace surfcast::builder {
@@ -360,7 +361,7 @@ std::vector<PieceRun> runs_of(const std::vector<size_t>& pieces) {
 }
 
 std::string text_of(const PlanRequest& request) {
-  return json_of(request).dump(-1, ' ', false, PlanJson::error_handler_t::replace);
+  return json_text(json_of(request));
 }
 
 Result<std::string> write_plan(BuildPlan& plan) {
@@ -375,7 +376,7 @@ Result<std::string> write_plan(BuildPlan& plan) {
 }
 
 Result<BuildPlan> read_plan(const std::string& text) {
-  const PlanJson json = PlanJson::parse(text, nullptr, false);
+  const PlanJson json = parse_ordered_json_text(text);
   if (!json.is_object() || !json.contains("surfcast_build_plan")) return damaged_plan();
   if (json["surfcast_build_plan"] != kPlanVersion) {
     return fail(ErrorKind::kUnsupported, "is of another version of the format");

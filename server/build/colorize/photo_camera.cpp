@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/json_text.h"
 #include "mesh/model_files.h"
 
 namespace surfcast::colorize {
@@ -73,7 +74,7 @@ std::optional<PhotoCamera::Seen> PhotoCamera::project(const glm::dvec3& world) c
 }
 
 Result<std::vector<PhotoCamera>> parse_cameras(std::string_view text, const std::filesystem::path& path) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json_text(text);
   const auto named = [&path](const std::string& what) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": " + what);
   };

@@ -3,6 +3,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "base/json_text.h"
 #include "exporter/even_sample.h"
 #include "exporter/las_bytes.h"
 #include "exporter/las_coding.h"
@@ -104,7 +105,7 @@ class EptFolder : public NodeBatch {
   Result<uint64_t> finish(const OctreeFacts& facts) override {
     Status status = write_waiting();
     if (status) status = write_hierarchy();
-    if (status) status = write_text("ept.json", description(facts).dump(1));
+    if (status) status = write_text("ept.json", json_text(description(facts), 1));
     if (status) status = folder_.put_in_place();
     if (!status) return fail(status);
     return bytes_;
@@ -152,7 +153,7 @@ class EptFolder : public NodeBatch {
       Json json = Json::object();
       for (const size_t i : page.nodes) json[name_of(keys_[i])] = points_[i];
       for (const size_t i : page.subpages) json[name_of(keys_[pages[i].nodes.front()])] = -1;
-      Status status = write_text("ept-hierarchy/" + name_of(keys_[page.nodes.front()]) + ".json", json.dump());
+      Status status = write_text("ept-hierarchy/" + name_of(keys_[page.nodes.front()]) + ".json", json_text(json));
       if (!status) return status;
     }
     return {};

@@ -11,6 +11,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "exporter/even_sample.h"
 #include "exporter/las_bytes.h"
 #include "exporter/new_folder.h"
@@ -129,7 +130,7 @@ class PotreeFolder : public NodeBatch {
     if (status) status = file_.commit_unflushed();
     if (!status) return fail(status);
     const Bytes hierarchy = hierarchy_of_nodes();
-    const std::string text = description(facts).dump(1);
+    const std::string text = json_text(description(facts), 1);
     status = folder_.write("hierarchy.bin", hierarchy);
     if (status) status = folder_.write("metadata.json", std::as_bytes(std::span(text)));
     if (status) status = folder_.put_in_place();

@@ -11,7 +11,9 @@
 
 #include <zstd.h>
 
+#include "base/contract.h"
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "scan/json_access.h"
 #include "scan/las_reader.h"
 #include "scan/text_tokens.h"
@@ -87,7 +89,7 @@ std::string page_name(const EptKey& key) {
 /// Takes the nodes of a page, and the keys of pages below it.
 Status take_page(const EptDescription& ept, std::span<const std::byte> bytes, const geometry::Zone& zone,
                  EptNodes& nodes, std::vector<EptKey>& pages) {
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object()) return invalid_input("is no JSON object");
   for (const auto& [name, count] : json.items()) {
     const std::optional<EptKey> node = parse_key(name);
@@ -127,6 +129,7 @@ PointTable binary_table(const EptDescription& ept, std::vector<std::byte> record
   PointTable table;
   table.records = std::move(records);
   const size_t stride = ept.record_bytes();
+  SURFCAST_EXPECTS(stride > 0);
   table.rows = table.records.size() / stride;
   const std::byte* first = table.records.data();
   for (const EptDimension& dimension : ept.schema) {
@@ -177,7 +180,7 @@ size_t EptDescription::record_bytes() const {
 }
 
 Result<EptDescription> parse_ept(std::span<const std::byte> bytes) {
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object()) return invalid_input("is no JSON object");
   EptDescription ept;
   const std::string coding = text_of(json, "dataType");
@@ -217,6 +220,7 @@ Result<EptNodes> read_ept_nodes(const EptDescription& ept, const FileFolder& fol
   while (!pages.empty()) {
     const std::vector<EptKey> depth = std::exchange(pages, {});
     std::vector<std::string> names;
+    names.reserve(depth.size());
     for (const EptKey& key : depth) names.push_back(page_name(key));
     folder.prefetch(names);
     for (const EptKey& key : depth) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "base/mapped_file.h"
 #include "scan/meshopt.h"
 #include "scan/named_file.h"
@@ -25,7 +26,7 @@ uint32_t word_at(Bytes bytes, size_t offset) {
 }
 
 Result<Json> parse_json(Bytes bytes) {
-  Json json = Json::parse(as_text(bytes), nullptr, false);
+  Json json = parse_json_text(as_text(bytes));
   if (json.is_discarded() || !json.is_object()) return invalid_input("glTF file whose JSON cannot be read");
   const std::string version = text_of(member(json, "asset"), "version");
   if (!version.starts_with("2.")) {
@@ -256,7 +257,7 @@ Result<Bytes> GltfBuffers::range(const Json& stated) const {
 Result<Bytes> GltfBuffers::decompress(const Json& packed, uint64_t index) {
   if (const auto known = decompressed_.find(index); known != decompressed_.end()) return known->second;
   const Result<Bytes> bytes = range(packed);
-  if (!bytes) return bytes;
+  if (!bytes) return fail(bytes);
   const std::string mode = text_of(packed, "mode");
   const std::string filter = text_of(packed, "filter");
   const MeshoptView stated = meshopt_view(packed, mode, filter);

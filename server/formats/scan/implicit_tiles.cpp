@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "scan/scalar_type.h"
 #include "scan/text_tokens.h"
 
@@ -45,7 +46,7 @@ const Json& either(const Json& json, const char* name, const char* former) {
 }
 
 Result<Json> parse_object(Bytes text) {
-  Json json = Json::parse(as_text(text), nullptr, false);
+  Json json = parse_json_text(as_text(text));
   if (!json.is_object()) return invalid_input("a subtree that is no JSON object");
   return json;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "scan/move_points.h"
 #include "scan/oct_normal.h"
 #include "scan/readers.h"
@@ -23,7 +24,7 @@ constexpr size_t kHeaderBytes = 28;
 
 Result<Json> parse_table(Bytes text) {
   if (text.empty()) return Json::object();
-  Json json = Json::parse(as_text(text), nullptr, false);
+  Json json = parse_json_text(as_text(text));
   if (!json.is_object()) return invalid_input("a table of the tile is no JSON object");
   return json;
 }

@@ -12,6 +12,7 @@
 
 #include "base/contract.h"
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "scan/column_names.h"
 #include "scan/las_reader.h"
 #include "scan/oct_normal.h"
@@ -143,7 +144,7 @@ Status parse_coding(const Json& json, PotreeScan& scan) {
 Result<PotreeScan> parse_cloud(const fs::path& path, const Selection& selection) {
   const Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(file);
-  const Json json = Json::parse(as_text(file->bytes()), nullptr, false);
+  const Json json = parse_json_text(as_text(file->bytes()));
   if (!json.is_object()) return invalid_input("is no JSON object");
   PotreeScan scan;
   scan.folder = path.parent_path();
@@ -280,7 +281,7 @@ Result<Attribute> parse_attribute(const Json& json) {
 Result<PotreeScan> parse_metadata(const fs::path& path, const Selection& selection) {
   const Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(file);
-  const Json json = Json::parse(as_text(file->bytes()), nullptr, false);
+  const Json json = parse_json_text(as_text(file->bytes()));
   PotreeScan scan;
   scan.folder = path.parent_path();
   const auto scale = numbers_of(json, "scale", 3);

@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/json_text.h"
 #include "base/mapped_file.h"
 #include "scan/json_access.h"
 #include "scan/potree_reader.h"
@@ -29,7 +30,7 @@ std::optional<ScanFolder> describes(const fs::path& path) {
   if (extension != ".json" && extension != ".js") return std::nullopt;
   const Result<MappedFile> file = MappedFile::open(path);
   if (!file) return std::nullopt;
-  const Json json = Json::parse(as_text(file->bytes()), nullptr, false);
+  const Json json = parse_json_text(as_text(file->bytes()));
   const std::optional<FolderFormat> format = format_of(json);
   if (!format) return std::nullopt;
   return ScanFolder{*format, path};

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/invalid_input.h"
+#include "base/json_text.h"
 #include "scan/implicit_tiles.h"
 #include "scan/readers.h"
 #include "scan/text_tokens.h"
@@ -103,7 +104,7 @@ class TilesetWalk {
     if (above.depth > kDeepest) return invalid_input("tilesets are nested too deeply");
     const Result<TileFile> file = TileFile::open(folder_, name);
     if (!file) return fail(file);
-    const Json json = Json::parse(as_text(file->bytes()), nullptr, false);
+    const Json json = parse_json_text(as_text(file->bytes()));
     const Json& root = member(json, "root");
     if (!root.is_object()) return file->error("has no root tile");
     return add_tile(root, fs::path(name).parent_path(), above);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/json_text.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::gaussian {
@@ -114,11 +115,11 @@ bool looks_like_sog_meta(std::string_view text) {
 }
 
 Result<SogMeta> parse_sog_meta(std::string_view text) {
-  const json root = json::parse(text.begin(), text.end(), nullptr, false);
+  const json root = parse_json_text(text);
   if (!root.is_object()) return fail(ErrorKind::kInvalidInput, "damaged JSON");
   const json version = root.value("version", json(1));
   if (version != 2) {
-    return fail(ErrorKind::kUnsupported, "SOG version " + scan::printable(version.dump()) + "; 2 is read");
+    return fail(ErrorKind::kUnsupported, "SOG version " + scan::printable(json_text(version)) + "; 2 is read");
   }
   Values values(root);
   SogMeta meta = parse_values(values);

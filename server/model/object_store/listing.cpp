@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "object_store/object_url.h"
 #include "scan/xml_tree.h"
 
@@ -38,7 +39,7 @@ Result<ListingPage> parse_s3(std::string_view text, std::string_view prefix) {
 }
 
 Result<ListingPage> parse_json(std::string_view text) {
-  const nlohmann::json list = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const nlohmann::json list = parse_json_text(text);
   if (!list.is_array()) return fail(ErrorKind::kInvalidInput, "the store's list is no JSON");
   ListingPage page;
   for (const nlohmann::json& entry : list) {

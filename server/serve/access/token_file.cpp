@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 
 namespace surfcast::access {
 namespace {
@@ -72,7 +73,7 @@ Result<std::vector<Principal>> read_tokens(const fs::path& file) {
   std::ifstream stream(file);
   if (!stream) return fail(ErrorKind::kIo, file.string() + ": cannot be read");
   try {
-    auto principals = to_principals(json::parse(stream));
+    auto principals = to_principals(parse_json_text(std::string(std::istreambuf_iterator<char>(stream), {})));
     if (principals) return principals;
     return fail_about(file.string(), principals);
   } catch (const json::exception&) {
@@ -86,7 +87,8 @@ Status write_tokens(const fs::path& file, const std::vector<Principal>& tokens) 
   std::error_code code;
   const fs::file_status former = fs::status(file, code);
   const fs::perms mode = fs::exists(former) ? former.permissions() : fs::perms::owner_read | fs::perms::owner_write;
-  if (Status status = write_file_atomically(file, json{{"tokens", entries}}.dump(2) + "\n"); !status) return status;
+  const std::string text = json_text(json{{"tokens", entries}}, 2) + "\n";
+  if (Status status = write_file_atomically(file, text); !status) return status;
   fs::permissions(file, mode, code);
   if (code) return fail(ErrorKind::kIo, file.string() + ": its mode cannot be set: " + code.message());
   return {};

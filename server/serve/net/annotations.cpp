@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/hash.h"
+#include "base/json_text.h"
 
 namespace surfcast::net {
 namespace {
@@ -114,7 +115,7 @@ std::string text_of(json views, json annotations, const std::string& model) {
                       {"model", model},
                       {"views", std::move(views)},
                       {"annotations", std::move(annotations)}};
-  return document.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return json_text(document, 2) + "\n";
 }
 
 Annotations with_edition(std::string document) {
@@ -135,7 +136,7 @@ Result<std::string> content_of(const fs::path& file, size_t most, const std::str
 }  // namespace
 
 Result<std::string> normalized_annotations(std::string_view document, const std::string& model) {
-  const json parsed = json::parse(document, nullptr, /*allow_exceptions=*/false);
+  const json parsed = parse_ordered_json_text(document);
   if (parsed.is_discarded()) return wrong("the annotations are not JSON");
   if (Status status =
           check_members(parsed, {"format", "version", "model", "views", "annotations"}, "the document of annotations");

@@ -6,6 +6,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "base/json_text.h"
 #include "model/volume_facts.h"
 #include "net/convert.h"
 #include "protocol/errors.h"
@@ -45,8 +46,7 @@ unsigned status_of(ErrorKind kind) {
 }
 
 HttpAnswer json_answer(const json& document) {
-  // Names of files may hold any byte; JSON wants UTF-8.
-  return text_answer(document.dump(2, ' ', false, json::error_handler_t::replace) + "\n", kJson);
+  return text_answer(json_text(document, 2) + "\n", kJson);
 }
 
 json to_json(const glm::dvec3& v) {
@@ -256,7 +256,7 @@ HttpAnswer picture_answer(service::EncodedPicture picture) {
   HttpAnswer answer;
   answer.content_type = media_type(picture.format);
   answer.headers = {{"Server-Timing", server_timing(picture.stats.stages)},
-                    {"X-Surfcast-Camera", to_json(picture.camera).dump()},
+                    {"X-Surfcast-Camera", json_text(to_json(picture.camera))},
                     {"X-Surfcast-Surfels", std::to_string(picture.stats.surfels_drawn)},
                     {"X-Surfcast-Blocks", std::to_string(picture.stats.blocks_drawn)},
                     {"X-Surfcast-Converged", picture.converged && !picture.preview ? "true" : "false"},
