@@ -15,8 +15,6 @@ namespace surfcast::pick {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Items extend at most this far from their centres, in units of the largest radius of their block.
-constexpr double kReachInRadii = 2;
 /// Upper bound of the widening of discs by the prefilter of visibility, pixels.
 constexpr double kReachInPixels = 2;
 

@@ -34,7 +34,6 @@ SourceBlocks::Hulls SourceBlocks::hulls(const model::ModelFile& model) {
 }
 
 SourceBlocks::Hulls hulls_of(const model::ModelFile& model, const kinds::PickQuery& query, SourceBlocks& source) {
-  constexpr double kReachInRadii = 2;  // of what is drawn of an item (model::EncodedBlock::max_radius)
   SourceBlocks::Hulls hulls = source.hulls(model);
   if (!(query.reach > 0)) return hulls;
   auto reaching = selection::with_reach(*hulls, query.reach / kReachInRadii);

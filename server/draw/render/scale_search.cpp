@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFirstConstant = 0.1;   // of the time at full size, before another size has been measured
 constexpr double kLeast = 0.125;         // scale
-constexpr double kSame = 1.03;           // ratio of scales that are not told apart
+constexpr double kSameScale = 1.03;      // ratio of scales that are not told apart
 constexpr double kLongestScaleStep = 3;  // ratio of scales
 constexpr size_t kMostScales = 5;
 
@@ -42,12 +42,13 @@ std::optional<double> ScaleSearch::next() const {
     const ScaleTime other =
         points_.size() == 1 ? ScaleTime{0, kFirstConstant * smallest.milliseconds} : points_[points_.size() - 2];
     return std::clamp(solve(smallest, other), std::max(kLeast, smallest.scale / kLongestScaleStep),
-                      smallest.scale / kSame);
+                      smallest.scale / kSameScale);
   }
   const ScaleTime found = best();
   const ScaleTime larger = *std::prev(std::ranges::find(points_, found.scale, &ScaleTime::scale));
-  if (found.milliseconds >= kShortTime * asked_ || larger.scale <= kSame * kSame * found.scale) return std::nullopt;
-  return std::clamp(solve(found, larger), kSame * found.scale, larger.scale / kSame);
+  if (found.milliseconds >= kShortTime * asked_ || larger.scale <= kSameScale * kSameScale * found.scale)
+    return std::nullopt;
+  return std::clamp(solve(found, larger), kSameScale * found.scale, larger.scale / kSameScale);
 }
 
 /// The scale of the time that is aimed at, on the line through two points over the number of pixels; 0: there is none.
