@@ -56,7 +56,7 @@ describe('a drag', () => {
     const still = await overlay();
     wire.holdFrames();
     await look.drag(yard.page, 40, -12);
-    await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
+    await expect.poll(() => warping.state(yard.page)).toBe('warped');
     const [moved, warped] = [await overlay(), await warping.screen(yard.page)];
     expect(moved).not.toBe(still);
     wire.releaseFrames();
@@ -138,7 +138,7 @@ describe('a warped picture', () => {
     const wire = await openYard();
     wire.holdFrames();
     await look.drag(yard.page, 40, 0);
-    await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
+    await expect.poll(() => warping.state(yard.page)).toBe('warped');
     await yard.page.evaluate(() => {
       const gl = document.querySelector<HTMLCanvasElement>('canvas.warped')!.getContext('webgl2')!;
       const extension = gl.getExtension('WEBGL_lose_context')!;
@@ -147,7 +147,7 @@ describe('a warped picture', () => {
     });
     await expect.poll(() => warping.isWarped(yard.page)).toBe(false);
     await yard.page.evaluate(() => (window as unknown as { restore: () => void }).restore());
-    await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
+    await expect.poll(() => warping.state(yard.page)).toBe('warped');
     wire.releaseFrames();
     await look.sharp(yard.page);
     expect(await warping.isWarped(yard.page)).toBe(false);
@@ -171,7 +171,7 @@ describe('a warped picture', () => {
       await expect.poll(() => wire.asked.filter((kind) => kind === 'openView').length).toBe(2);
       await yard.page.mouse.wheel(0, 300);
       await yard.page.waitForTimeout(300);
-      await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
+      await expect.poll(() => warping.state(yard.page)).toBe('warped');
       // What is left of the former one has not moved.
       expect(await warping.distance(yard.page, await warping.screen(yard.page), warped)).toBeLessThan(0.1);
       wire.releaseFrames();
@@ -189,7 +189,7 @@ describe('a warped picture', () => {
     await yard.page.locator('.banner').waitFor();
     const before = await warping.screen(yard.page);
     await look.drag(yard.page, 40, 0);
-    await expect.poll(() => warping.isWarped(yard.page)).toBe(true);
+    await expect.poll(() => warping.state(yard.page)).toBe('warped');
     expect(await warping.distance(yard.page, before, await warping.screen(yard.page))).toBeGreaterThan(1);
     yard.server = await Server.start(yard.model, port);
     await look.sharp(yard.page);

@@ -34,8 +34,17 @@ export const record = (page: Page): Promise<void> =>
 
 export const shown = (page: Page): Promise<Window['shown']> => page.evaluate(() => window.shown);
 
-export const isWarped = (page: Page): Promise<boolean> =>
-  page.evaluate(() => !document.querySelector<HTMLCanvasElement>('canvas.warped')!.hidden);
+/** What is shown, or why it cannot be warped. */
+export const state = (page: Page): Promise<'warped' | 'picture' | 'WebGL is lost' | 'no WebGL'> =>
+  page.evaluate(() => {
+    const canvas = document.querySelector<HTMLCanvasElement>('canvas.warped')!;
+    if (!canvas.hidden) return 'warped';
+    const gl = canvas.getContext('webgl2');
+    if (!gl) return 'no WebGL';
+    return gl.isContextLost() ? 'WebGL is lost' : 'picture';
+  });
+
+export const isWarped = async (page: Page): Promise<boolean> => (await state(page)) === 'warped';
 
 /** What a user sees of the picture and its overlay. */
 export const screen = (page: Page): Promise<Buffer> => page.locator('.canvases').screenshot();
