@@ -15,8 +15,6 @@ namespace {
 
 /// Pixels a side of the rectangles that are searched at once.
 constexpr int kRegionSide = 1024;
-/// Upper bound of the widening of discs by the prefilter of visibility, pixels.
-constexpr double kSurfaceReach = 2;
 
 /// A leaf in view of a region.
 struct LeafInView {
@@ -41,8 +39,8 @@ kinds::PixelRange pixels_of(const geometry::Box& box, double reach, const geomet
   }
   const glm::dvec2 first(region.first);
   const glm::dvec2 last(region.last);
-  return {glm::ivec2(glm::clamp(glm::floor(low - kSurfaceReach), first, last)),
-          glm::ivec2(glm::clamp(glm::ceil(high + kSurfaceReach), first, last))};
+  return {glm::ivec2(glm::clamp(glm::floor(low - kReachInPixels), first, last)),
+          glm::ivec2(glm::clamp(glm::ceil(high + kReachInPixels), first, last))};
 }
 
 /// A lower bound of the camera z of a block's items.
@@ -82,8 +80,8 @@ class FrontSearch {
   /// Sorted by `nearest`.
   [[nodiscard]] std::vector<LeafInView> leaves_in(const kinds::PixelRange& region) const {
     const geometry::CameraFrame& frame = query_.frame;
-    const selection::Frustum frustum(frame, region.first.x - kSurfaceReach, region.first.y - kSurfaceReach,
-                                     region.last.x + 1 + kSurfaceReach, region.last.y + 1 + kSurfaceReach);
+    const selection::Frustum frustum(frame, region.first.x - kReachInPixels, region.first.y - kReachInPixels,
+                                     region.last.x + 1 + kReachInPixels, region.last.y + 1 + kReachInPixels);
     std::vector<LeafInView> leaves;
     std::vector<uint32_t> open = model::shown_roots(model_, query_.hidden_members);
     const auto sides = query_.transparent ? selection::Sides::kBoth : selection::Sides::kFront;

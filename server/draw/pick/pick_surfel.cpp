@@ -15,8 +15,6 @@ namespace surfcast::pick {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Upper bound of the widening of discs by the prefilter of visibility, pixels.
-constexpr double kReachInPixels = 2;
 
 /// A leaf that the ray passes through, and the smallest camera z at which one of its items may be visible.
 struct LeafOnRay {

@@ -20,6 +20,8 @@ namespace surfcast::pick {
 /// What is drawn of an item extends at most this far from its centre, in units of the largest radius of its block
 /// (model::EncodedBlock::max_radius).
 inline constexpr double kReachInRadii = 2;
+/// Upper bound of the widening of discs by the prefilter of visibility, pixels.
+inline constexpr double kReachInPixels = 2;
 
 /// Decoded blocks with all attributes. The most recently used ones are kept within a budget of bytes, because
 /// consecutive picks are often close together. Thread-safe.
