@@ -20,7 +20,7 @@ std::optional<std::vector<uint32_t>> parse_unsigneds(std::string_view text, size
 /// The number of a name among those of "first|second|third".
 std::optional<int> parse_choice(std::string_view names, std::string_view text);
 
-/// Whether a number is an opacity, or another part of a whole.
+/// Whether a number lies between 0 and 1, as opacities do.
 constexpr bool is_share(double value) {
   return value >= 0 && value <= 1;
 }

@@ -365,7 +365,7 @@ std::string text_of(const PlanRequest& request) {
 }
 
 Result<std::string> write_plan(BuildPlan& plan) {
-  try {
+  try {  // `dump` throws where `json_text` would replace bytes: a plan must name its inputs exactly
     PlanJson json{{"surfcast_build_plan", kPlanVersion}, {"digest", ""}, {"plan", json_of(plan)}};
     plan.digest = digest_of(json["plan"]);
     json["digest"] = plan.digest;

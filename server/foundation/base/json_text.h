@@ -9,7 +9,7 @@ namespace surfcast {
 // nlohmann::json instantiates its parser and its writer in every source that calls them, for seconds of compilation
 // each. Here they are instantiated once.
 
-/// The document of a text; discarded (`is_discarded`, and of no other type) if the text is not JSON.
+/// The document of a text. If the text is not JSON, `is_discarded` is true and the document is of no other type.
 [[nodiscard]] nlohmann::json parse_json_text(std::string_view text);
 
 /// The same with the members of objects in the order of the text.

@@ -3,24 +3,19 @@
 #include <algorithm>
 #include <iostream>
 
+#include "base/ascii_text.h"
 #include "command_line/parse_failure.h"
 #include "command_line/shell_completion.h"
 
 namespace surfcast::command_line {
 namespace {
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 /// The error message if no command was given or found; none otherwise. `first` is the first argument, empty if there is
 /// none.
 std::optional<std::string> missing_command(const CommandSummary& program, const std::string& first) {
   const std::vector<std::string> names = command_names(program);
   if (names.empty() || first.starts_with('-') || std::ranges::find(names, first) != names.end()) return std::nullopt;
-  const std::string hint = "; the commands are " + listed(names) + " (" + program.name + " --help)";
+  const std::string hint = "; the commands are " + joined(names, ", ") + " (" + program.name + " --help)";
   if (first.empty()) return "a command is missing" + hint;
   const std::optional<std::string> closest = closest_word(first, names);
   const std::string question = closest ? " (did you mean '" + *closest + "'?)" : "";
