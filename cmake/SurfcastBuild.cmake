@@ -172,7 +172,8 @@ function(surfcast_join_sources target)
   endif()
 endfunction()
 
-# Replaces the sources of TARGET by files that include up to SURFCAST_JOINED_SOURCES of them each.
+# Replaces the sources of TARGET by files that include up to SURFCAST_JOINED_SOURCES of them each, but for sources with
+# definitions or the property SURFCAST_COMPILE_ALONE, such as generated ones.
 set(SURFCAST_JOINED_SOURCES 12)
 function(surfcast_join_sources_now target)
   get_target_property(sources ${target} SOURCES)
@@ -209,12 +210,6 @@ function(surfcast_join_sources_now target)
     list(APPEND kept ${folder}/part_${part}.cpp)
   endforeach()
   set_property(TARGET ${target} PROPERTY SOURCES ${kept})
-endfunction()
-
-# surfcast_compile_alone(FILE...): these sources are never joined, because they share a name of an unnamed namespace with
-# another source of their target, or hide one.
-function(surfcast_compile_alone)
-  set_source_files_properties(${ARGN} PROPERTIES SURFCAST_COMPILE_ALONE ON)
 endfunction()
 
 # surfcast_module(NAME [COMPUTES|IO_BOUND|COMMANDS] [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
@@ -284,7 +279,21 @@ endfunction()
 set(SURFCAST_TEST_OPTIONS -O0)
 set(SURFCAST_COMPUTING_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
 
-# surfcast_test(NAME [PARTS n] SOURCES file... [LIBS lib...] [LABELS label...])
+# surfcast_test_library(NAME [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
+# What several test programs share, included as "folder/header.h" relative to tests/.
+function(surfcast_test_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${name}
+    PUBLIC ${ARG_PUBLIC}
+    PRIVATE surfcast_warnings ${ARG_PRIVATE} GTest::gtest GTest::gmock)
+  target_compile_options(${name} PRIVATE ${SURFCAST_COMPUTING_TEST_OPTIONS})
+  surfcast_use_precompiled_headers(${name} surfcast_computing_test_headers)
+  surfcast_join_sources(${name})
+endfunction()
+
+# surfcast_test(NAME [COMPUTES] [PARTS n] [NIGHTLY pattern...] SOURCES file... [LIBS lib...] [LABELS label...])
 # One GoogleTest program of one module, and one test of ctest: most cases take less time than a process needs to start.
 # PARTS: the cases are dealt out to n tests, NAME_1 to NAME_n, which run beside each other. For programs that take more
 # than half a minute. A label is one word with parts that ctest can select (-L gl, -LE slow): first the requirements of a
@@ -293,10 +302,10 @@ set(SURFCAST_COMPUTING_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-
 # sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
 # under it in `make nightly`, as all unit tests do under the address sanitizer.
 # COMPUTES: optimized a little, as tests with the labels gl and slow are.
-# NIGHTLY: a filter of GoogleTest. The cases that it selects run in `make nightly` alone, not in `make test`: they are a
-# test of their own with the suite `nightly`.
+# NIGHTLY: patterns of cases, as in filters of GoogleTest. These cases run in `make nightly` alone, not in `make test`:
+# they are a test of their own with the suite `nightly`. Sanitizers do not run them.
 function(surfcast_test name)
-  cmake_parse_arguments(ARG "COMPUTES" "NIGHTLY;PARTS" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "COMPUTES" "PARTS" "NIGHTLY;SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_PARTS)
     set(ARG_PARTS 1)
   endif()
@@ -326,11 +335,14 @@ function(surfcast_test name)
   if(ARG_LABELS MATCHES "threads|sockets")
     add_dependencies(concurrent_tests ${name})
   endif()
-  if(ARG_NIGHTLY AND NOT SURFCAST_SANITIZE)
-    surfcast_add_cases(${name} ${name} ${ARG_PARTS} "-${ARG_NIGHTLY}" "${ARG_LABELS}")
-    surfcast_add_cases(${name} ${name}_nightly 1 "${ARG_NIGHTLY}" "${ARG_LABELS}-nightly")
-  else()
+  if(NOT ARG_NIGHTLY)
     surfcast_add_cases(${name} ${name} ${ARG_PARTS} "*" "${ARG_LABELS}")
+    return()
+  endif()
+  list(JOIN ARG_NIGHTLY : nightly)
+  surfcast_add_cases(${name} ${name} ${ARG_PARTS} "-${nightly}" "${ARG_LABELS}")
+  if(NOT SURFCAST_SANITIZE)
+    surfcast_add_cases(${name} ${name}_nightly 1 "${nightly}" "${ARG_LABELS}-nightly")
   endif()
 endfunction()
 

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-BuildReport build(const std::vector<fs::path>& inputs, const fs::path& target, const BuildOptions& options = {}) {
+BuildReport build_of(const std::vector<fs::path>& inputs, const fs::path& target, const BuildOptions& options = {}) {
   const Result<BuildReport> report = build_model(inputs, target, options, [](const BuildStep&) {});
   EXPECT_TRUE(report) << report.error().message;
   return report.value_or(BuildReport{});
@@ -47,8 +47,8 @@ class BuildModelTest : public ::testing::Test {
 
 TEST_F(BuildModelTest, ManyPartsGiveTheSurfelsOfOne) {
   numbered(hills_and_dome(120)).write(scan_);
-  const BuildReport whole = build({scan_}, model_);
-  const BuildReport parts = build({scan_}, other_, in_parts_of(2500));
+  const BuildReport whole = build_of({scan_}, model_);
+  const BuildReport parts = build_of({scan_}, other_, in_parts_of(2500));
   EXPECT_EQ(whole.parts, 1U);
   EXPECT_GT(parts.parts, 6U);
   EXPECT_EQ(parts.surfels, whole.surfels);
@@ -84,8 +84,8 @@ std::vector<glm::dvec3> hills_and_bushes(int side) {
 
 TEST_F(BuildModelTest, KindsAndRadiiDoNotDependOnTheParts) {
   numbered(hills_and_bushes(120)).write(scan_);
-  const BuildReport whole = build({scan_}, model_);
-  const BuildReport parts = build({scan_}, other_, in_parts_of(12000));
+  const BuildReport whole = build_of({scan_}, model_);
+  const BuildReport parts = build_of({scan_}, other_, in_parts_of(12000));
   EXPECT_GT(parts.parts, 3U);
   EXPECT_GT(whole.scan.scatter, 4000U);
   EXPECT_EQ(parts.scan.scatter, whole.scan.scatter);
@@ -107,7 +107,7 @@ TEST_F(BuildModelTest, SignsOfNormalsAgreeAcrossParts) {
   numbered(testing::sphere(20000, centre, 10)).write(scan_);
   BuildOptions options = in_parts_of(1500);
   options.z_up = false;
-  const BuildReport report = build({scan_}, model_, options);
+  const BuildReport report = build_of({scan_}, model_, options);
   EXPECT_GT(report.parts, 8U);
   EXPECT_TRUE(report.scan.oriented);
   for (const auto& [number, surfel] : surfels_of(model_)) {
@@ -135,8 +135,8 @@ TEST_F(BuildModelTest, PointsOfVtkAreAScanLikeAnyOther) {
   numbered(positions).write(scan_);
   const fs::path vtk = folder_ / "scan.vtu";
   write_vtu(positions, vtk);
-  build({scan_}, other_);
-  const BuildReport report = build({vtk}, model_);
+  build_of({scan_}, other_);
+  const BuildReport report = build_of({vtk}, model_);
   EXPECT_THAT(report.scan.notes, ::testing::Contains(HasSubstr("scan.vtu: cells are left out")));
   const auto names = model::ModelFile::open(model_).value().info().scalar_names;
   EXPECT_THAT(names, ::testing::IsSupersetOf({"number", "intensity"}));
@@ -156,9 +156,9 @@ TEST_F(BuildModelTest, ThreadsDoNotChangeAByte) {
   std::vector<std::vector<char>> parts;
   for (const size_t threads : {1, 2, 8}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    build({scan_}, model_);
+    build_of({scan_}, model_);
     whole.push_back(model::read_bytes(model_));
-    build({scan_}, model_, in_parts_of(700));
+    build_of({scan_}, model_, in_parts_of(700));
     parts.push_back(model::read_bytes(model_));
   }
   EXPECT_THAT(whole, ::testing::Each(whole[0]));
@@ -172,7 +172,7 @@ TEST_F(BuildModelTest, SeveralInputsWithDifferentAttributesAreOneModelInParts) {
   const std::vector<glm::dvec3> positions = testing::square_lattice(50, 1, {25, 25, 3});
   for (size_t i = 0; i < positions.size(); ++i) colored.add(positions[i], std::to_string(2500 + i) + " 10 20 30");
   colored.write(folder_ / "colored.xyz");
-  const BuildReport report = build({scan_, folder_ / "colored.xyz"}, model_, in_parts_of(900));
+  const BuildReport report = build_of({scan_, folder_ / "colored.xyz"}, model_, in_parts_of(900));
   EXPECT_EQ(report.surfels, 5000U);
   EXPECT_THAT(report.scan.notes,
               ::testing::ElementsAre(HasSubstr("scan.xyz: no colour"), HasSubstr("colored.xyz: no intensity")));
@@ -192,7 +192,7 @@ TEST_F(BuildModelTest, AScanWithoutOpacitiesIsOpaqueBesideOneWith) {
   glass.header = "x y z number alpha";
   for (const glm::dvec3& p : testing::square_lattice(50, 1, {60, 0, 0})) glass.add(p, "0 51");
   glass.write(folder_ / "glass.xyz");
-  const BuildReport report = build({scan_, folder_ / "glass.xyz"}, model_);
+  const BuildReport report = build_of({scan_, folder_ / "glass.xyz"}, model_);
   EXPECT_THAT(report.scan.notes, ::testing::Contains(HasSubstr("scan.xyz: no alpha, opaque")));
   const Result<model::ModelFile> model = model::ModelFile::open(model_);
   ASSERT_TRUE(model);
@@ -215,8 +215,8 @@ TextScan with_radii(const std::vector<glm::dvec3>& positions, double radius, siz
 TEST_F(BuildModelTest, RadiiAreScaledAlikeWhateverTheParts) {
   const std::vector<glm::dvec3> positions = hills_and_dome(120);
   with_radii(positions, 0.5).write(scan_);
-  const BuildReport whole = build({scan_}, model_);
-  const BuildReport parts = build({scan_}, other_, in_parts_of(2500));
+  const BuildReport whole = build_of({scan_}, model_);
+  const BuildReport parts = build_of({scan_}, other_, in_parts_of(2500));
   EXPECT_GT(parts.parts, 6U);
   for (const BuildReport& report : {whole, parts}) {
     ASSERT_EQ(report.radii.size(), 1U);
@@ -238,14 +238,14 @@ TEST_F(BuildModelTest, KeptRadiiComeBackAndEstimatedOnesAreThoseOfAScanWithout) 
   const std::vector<glm::dvec3> positions = testing::square_lattice(60, 1, {0, 0, 0});
   with_radii(positions, 0.25).write(scan_);
   numbered(positions).write(folder_ / "without.xyz");
-  build({folder_ / "without.xyz"}, other_);
+  build_of({folder_ / "without.xyz"}, other_);
   const auto without = surfels_of(other_);
   for (BuildOptions options : {BuildOptions{}, in_parts_of(900)}) {
     options.radii = estimation::RadiusPolicy::kKeep;
-    EXPECT_EQ(build({scan_}, model_, options).radii[0].decision.outcome, estimation::RadiusOutcome::kKept);
+    EXPECT_EQ(build_of({scan_}, model_, options).radii[0].decision.outcome, estimation::RadiusOutcome::kKept);
     for (const auto& [number, surfel] : surfels_of(model_)) ASSERT_NEAR(surfel.radius, 0.25F, 1e-4F) << number;
     options.radii = estimation::RadiusPolicy::kEstimate;
-    const BuildReport report = build({scan_}, model_, options);
+    const BuildReport report = build_of({scan_}, model_, options);
     EXPECT_EQ(report.scan.radii_estimated, positions.size());
     EXPECT_TRUE(report.scan.notes.empty()) << "as asked for";
     for (const auto& [number, surfel] : surfels_of(model_)) ASSERT_EQ(surfel.radius, without.at(number).radius);
@@ -255,7 +255,7 @@ TEST_F(BuildModelTest, KeptRadiiComeBackAndEstimatedOnesAreThoseOfAScanWithout) 
 TEST_F(BuildModelTest, RadiiThatMakeNoSenseAreEstimatedWithANote) {
   with_radii(testing::square_lattice(60, 1, {0, 0, 0}), 500).write(scan_);
   numbered(testing::square_lattice(60, 1, {0, 0, 4}), 3600).write(folder_ / "without.xyz");
-  const BuildReport report = build({scan_, folder_ / "without.xyz"}, model_, in_parts_of(2000));
+  const BuildReport report = build_of({scan_, folder_ / "without.xyz"}, model_, in_parts_of(2000));
   EXPECT_THAT(report.scan.notes, ::testing::ElementsAre(HasSubstr("scan.xyz: radii do not follow the sampling")));
   EXPECT_EQ(report.scan.radii_estimated, 7200U);
   ASSERT_EQ(report.radii.size(), 1U) << "the other has no column for them";
@@ -267,7 +267,7 @@ TEST_F(BuildModelTest, ThreadsDoNotChangeAByteOfScaledRadii) {
   std::vector<std::vector<char>> models;
   for (const size_t threads : {1, 2, 8}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    build({scan_}, model_, in_parts_of(700));
+    build_of({scan_}, model_, in_parts_of(700));
     models.push_back(model::read_bytes(model_));
   }
   EXPECT_THAT(models, ::testing::Each(models[0]));
@@ -278,7 +278,7 @@ TEST_F(BuildModelTest, DuplicatesAreDroppedWhereverPartsEnd) {
   const std::vector<std::string> once = scan.rows;
   scan.rows.insert(scan.rows.end(), once.begin(), once.end());
   scan.write(scan_);
-  const BuildReport report = build({scan_}, model_, in_parts_of(1000));
+  const BuildReport report = build_of({scan_}, model_, in_parts_of(1000));
   EXPECT_EQ(report.scan.points_read, 7200U);
   EXPECT_EQ(report.scan.duplicates, 3600U);
   EXPECT_EQ(report.surfels, 3600U);
@@ -286,14 +286,14 @@ TEST_F(BuildModelTest, DuplicatesAreDroppedWhereverPartsEnd) {
 
 TEST_F(BuildModelTest, OnePoint) {
   numbered({{1, 2, 3}}).write(scan_);
-  EXPECT_EQ(build({scan_}, model_).surfels, 1U);
+  EXPECT_EQ(build_of({scan_}, model_).surfels, 1U);
   EXPECT_EQ(surfels_of(model_).at(0).position, glm::dvec3(1, 2, 3));
 }
 
 TEST_F(BuildModelTest, TwoCoincidentPointsThatDifferStay) {
   numbered({{1, 2, 3}, {1, 2, 3}}).write(scan_);
-  EXPECT_EQ(build({scan_}, model_).surfels, 2U);
-  EXPECT_EQ(build({scan_}, model_, in_parts_of(1)).surfels, 2U);
+  EXPECT_EQ(build_of({scan_}, model_).surfels, 2U);
+  EXPECT_EQ(build_of({scan_}, model_, in_parts_of(1)).surfels, 2U);
 }
 
 TEST_F(BuildModelTest, AMillionPointsInOneSpotAreOnePart) {
@@ -302,7 +302,7 @@ TEST_F(BuildModelTest, AMillionPointsInOneSpotAreOnePart) {
   for (int i = 0; i < 1000000; ++i) stream << "5 5 5 " << i << " 0\n";
   stream << "6 6 6 1000000 0\n";
   stream.close();
-  const BuildReport report = build({scan_}, model_, in_parts_of(50000));
+  const BuildReport report = build_of({scan_}, model_, in_parts_of(50000));
   EXPECT_EQ(report.surfels, 1000001U);
   EXPECT_EQ(report.parts, 2U);
 }
@@ -311,7 +311,7 @@ TEST_F(BuildModelTest, OneFarOutlierLeavesTheRestInParts) {
   std::vector<glm::dvec3> positions = testing::square_lattice(80, 1, {0, 0, 0});
   positions.emplace_back(5e6, -7e6, 1e6);
   numbered(positions).write(scan_);
-  const BuildReport report = build({scan_}, model_, in_parts_of(800));
+  const BuildReport report = build_of({scan_}, model_, in_parts_of(800));
   EXPECT_EQ(report.surfels, 6401U);
   EXPECT_GT(report.parts, 8U);
   for (const auto& [number, surfel] : surfels_of(model_)) {
@@ -339,7 +339,7 @@ TEST_F(BuildModelTest, StagesAndBudgetAreReported) {
   numbered(testing::square_lattice(20, 1, {0, 0, 0})).write(scan_);
   BuildOptions options;
   options.memory = uint64_t{1} << 30;
-  const BuildReport report = build({scan_}, model_, options);
+  const BuildReport report = build_of({scan_}, model_, options);
   EXPECT_EQ(report.memory_budget, uint64_t{1} << 30);
   double seconds = 0;
   for (const auto& [stage, took] : report.stages) seconds += took;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <thread>
@@ -15,6 +16,8 @@
 #include "protocol/endpoint.h"
 
 namespace surfcast::client {
+
+inline constexpr std::chrono::milliseconds kLong{20'000};  // for what does come, however busy the machine
 
 /// Accepts one connection and says what it is told, whatever the client sends.
 class ScriptedServer {

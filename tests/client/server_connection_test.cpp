@@ -19,8 +19,7 @@ std::string bytes_of(const protocol::Hello& hello) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-constexpr milliseconds kLong{20'000};  // for what does come, however busy the machine
-constexpr milliseconds kShort{200};    // for what never comes
+constexpr milliseconds kShort{200};  // for what never comes
 
 Error error_of_connecting(const std::string& words, bool stays = false, milliseconds timeout = kLong) {
   const ScriptedServer server(words, stays);

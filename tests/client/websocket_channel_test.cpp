@@ -73,8 +73,6 @@ MessageChannel::TimePoint in(milliseconds duration) {
   return std::chrono::steady_clock::now() + duration;
 }
 
-constexpr milliseconds kLong{20'000};  // for what does come, however busy the machine
-
 std::string text_of(const Result<MessageChannel::Bytes>& message) {
   if (!message) return "error: " + message.error().message;
   return {reinterpret_cast<const char*>(message->data()), message->size()};

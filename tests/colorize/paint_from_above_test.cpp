@@ -1,11 +1,11 @@
 #include "colorize/paint_from_above.h"
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "colorize/xyz_line.h"
 #include "mesh/mesh_files.h"
 
 namespace surfcast::colorize {
@@ -31,12 +31,6 @@ double terrain(double x, double y) {
   return std::sin(x * 0.4) + 0.5 * std::cos(y * 0.7);
 }
 
-std::string line(double x, double y, double z) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "%.9f %.9f %.9f\n", x, y, z);
-  return text.data();
-}
-
 scan::ScanPoints read_all(const scan::ScanStream& stream) {
   return stream.read(0).value();
 }
@@ -49,9 +43,9 @@ TEST(PaintFromAbove, TerrainIsReadBackAndTreesDoNotPaintTheGroundBelowThem) {
     for (int i = 0; i < 100; ++i) {
       const double x = 0.2 * i + 0.13;
       const double y = 0.2 * j + 0.07;
-      rows += line(x, y, terrain(x, y));
+      rows += testing::xyz_line(x, y, terrain(x, y));
       const bool tree = std::hypot(x - 8, y - 12) < 2;
-      if (tree) rows += line(x + 0.05, y + 0.05, 6);
+      if (tree) rows += testing::xyz_line(x + 0.05, y + 0.05, 6);
     }
   }
   const auto file = folder.write("scan.xyz", rows);

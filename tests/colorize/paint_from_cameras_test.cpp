@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "builder/build_model.h"
+#include "colorize/xyz_line.h"
 #include "mesh/mesh_files.h"
 
 namespace surfcast::colorize {
@@ -39,12 +39,6 @@ std::vector<PhotoCamera> cameras_in(const MeshFolder& folder, const std::string&
   return *cameras;
 }
 
-std::string line(double x, double y, double z) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "%.9f %.9f %.9f\n", x, y, z);
-  return text.data();
-}
-
 TEST(PaintFromCameras, GroundIsReadBackAndABoardHidesWhatIsBehindIt) {
   const MeshFolder folder;
   const std::vector<PhotoCamera> cameras = cameras_in(folder);
@@ -53,8 +47,8 @@ TEST(PaintFromCameras, GroundIsReadBackAndABoardHidesWhatIsBehindIt) {
     for (int i = 0; i < 200; ++i) {
       const double x = 0.05 * i + 0.02;
       const double y = 0.05 * j + 0.03;
-      rows += line(x, y, 0);
-      if (std::abs(x - 5) < 1 && std::abs(y - 5) < 1) rows += line(x, y, 4);
+      rows += testing::xyz_line(x, y, 0);
+      if (std::abs(x - 5) < 1 && std::abs(y - 5) < 1) rows += testing::xyz_line(x, y, 4);
     }
   }
   const std::filesystem::path file = folder.write("scan.xyz", rows);

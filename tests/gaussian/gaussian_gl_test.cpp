@@ -21,7 +21,7 @@ using reference::GaussianSplat;
 using testing::draw;
 using testing::ModelPointer;
 
-constexpr int kSide = 128;  // pixels
+constexpr int kPictureSide = 128;  // pixels
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 geometry::Camera look(const glm::dvec3& eye, const glm::dvec3& focal, double view_angle) {
@@ -34,7 +34,7 @@ const geometry::Camera kInside = look({0.1, 0.05, 0.2}, {-0.6, -0.1, -0.3}, 75);
 picture::PictureRequest request_of(const geometry::Camera& camera) {
   picture::PictureRequest request;
   request.camera = camera;
-  request.width = request.height = kSide;
+  request.width = request.height = kPictureSide;
   return request;
 }
 
@@ -60,10 +60,6 @@ GaussianSplat splat_at(const glm::dvec3& position, const glm::dvec3& deviations,
   return splat;
 }
 
-bool mentions(const std::vector<std::string>& programs, const char* what) {
-  return std::ranges::any_of(programs, [&](const std::string& name) { return name.find(what) != std::string::npos; });
-}
-
 class GaussianGLTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { renderer_ = std::move(*render::Renderer::create({})); }
@@ -80,8 +76,8 @@ class GaussianGLTest : public ::testing::Test {
     const GaussianModel stored = testing::in_single_precision(model);
     const picture::Frame frame =
         draw(*renderer_, build(stored, convention == GaussianConvention::kFlat), request_of(camera));
-    const auto expected =
-        reference::draw_as_trained(stored, *geometry::make_camera_frame(camera, kSide, kSide), convention);
+    const auto expected = reference::draw_as_trained(
+        stored, *geometry::make_camera_frame(camera, kPictureSide, kPictureSide), convention);
     return reference::covered_psnr_of_codes(codes_of(frame.image), expected);
   }
 
@@ -90,7 +86,8 @@ class GaussianGLTest : public ::testing::Test {
     picture::PictureRequest request = request_of(camera);
     request.splat_convention = picture::SplatConvention::kExact;
     const picture::Frame frame = draw(*renderer_, build(stored), request);
-    const auto expected = reference::draw_exactly(stored, *geometry::make_camera_frame(camera, kSide, kSide));
+    const auto expected =
+        reference::draw_exactly(stored, *geometry::make_camera_frame(camera, kPictureSide, kPictureSide));
     return reference::covered_psnr_of_codes(codes_of(frame.image), expected);
   }
 
@@ -120,7 +117,7 @@ TEST_F(GaussianGLTest, AntialiasedModelsAreDrawnWithCompensatedOpacity) {
         testing::write_antialiased_spz(folder_ / "model.spz", reference::make_gaussian_model(name));
     const picture::Frame frame =
         draw(*renderer_, testing::build_and_open(spz, folder_ / "model.surf"), request_of(kMid));
-    const auto camera = *geometry::make_camera_frame(kMid, kSide, kSide);
+    const auto camera = *geometry::make_camera_frame(kMid, kPictureSide, kPictureSide);
     const GaussianModel stored = testing::reference_model(spz);
     const auto compensated = reference::draw_as_trained(stored, camera, GaussianConvention::kAntialiased);
     const auto plain = reference::draw_as_trained(stored, camera, GaussianConvention::kTrained);
@@ -201,7 +198,7 @@ TEST_F(GaussianGLTest, TheOpacityOfAPictureIsAFactorOfThatOfEveryGaussian) {
     const double opacity = 0.4 * reference::splat_opacity(splat);
     splat.logit = std::log(opacity / (1 - opacity));
   }
-  const auto frame = *geometry::make_camera_frame(kMid, kSide, kSide);
+  const auto frame = *geometry::make_camera_frame(kMid, kPictureSide, kPictureSide);
   picture::PictureRequest request = request_of(kMid);
   request.opacity = 0.4;
   EXPECT_GT(reference::covered_psnr_of_codes(codes_of(draw(*renderer_, built, request).image),
@@ -266,7 +263,7 @@ TEST_F(GaussianGLTest, WhatIsNotSeenIsNotDrawn) {
 TEST_F(GaussianGLTest, TilesWithTensOfThousandsOfGaussiansAreDrawnToTheEnd) {
   // Three rounds (SURFCAST_GAUSSIAN_ROUND). The black ones are seen by one pixel of the tile, the last by all.
   const geometry::Camera camera = look({0, 0, 3}, {0, 0, 0}, 36);
-  const double half_pixel = 0.5 * 3 / geometry::make_camera_frame(camera, kSide, kSide)->eta;
+  const double half_pixel = 0.5 * 3 / geometry::make_camera_frame(camera, kPictureSide, kPictureSide)->eta;
   GaussianModel model;
   for (int i = 0; i < 70000; ++i) {
     const double depth = -1e-6 * i;
@@ -278,8 +275,8 @@ TEST_F(GaussianGLTest, TilesWithTensOfThousandsOfGaussiansAreDrawnToTheEnd) {
     picture::PictureRequest request = request_of(camera);
     request.splat_convention = convention;
     const reference::LightPicture picture = codes_of(draw(*renderer_, built, request).image);
-    const glm::dvec4 crowded = picture.pixels[picture.index(kSide / 2, kSide / 2)];
-    const glm::dvec4 beside = picture.pixels[picture.index(kSide / 2 + 3, kSide / 2 + 3)];
+    const glm::dvec4 crowded = picture.pixels[picture.index(kPictureSide / 2, kPictureSide / 2)];
+    const glm::dvec4 beside = picture.pixels[picture.index(kPictureSide / 2 + 3, kPictureSide / 2 + 3)];
     EXPECT_NEAR(beside.y, 0.96, 0.01);
     if (convention == picture::SplatConvention::kExact) continue;  // there the black ones are nearly nothing
     EXPECT_LT(crowded.y, 0.01);
@@ -291,10 +288,10 @@ TEST_F(GaussianGLTest, APictureWithoutGaussiansCompilesNothingOfThem) {
   const std::unique_ptr<render::Renderer> renderer = std::move(*render::Renderer::create({}));
   const ModelPointer model = build(GaussianModel{{splat_at({0, 0, 0}, glm::dvec3(0.1), 0.9, glm::dvec3(1))}, 0});
   draw(*renderer, model, request_of(look({0, 0, 3}, {0, 0, 6}, 36)));
-  EXPECT_FALSE(mentions(renderer->programs(), "gaussian")) << "it is behind the eye";
+  EXPECT_FALSE(testing::mentions(renderer->programs(), "gaussian")) << "it is behind the eye";
   draw(*renderer, model, request_of(look({0, 0, 3}, {0, 0, 0}, 36)));
-  EXPECT_TRUE(mentions(renderer->programs(), "gaussian"));
-  EXPECT_FALSE(mentions(renderer->programs(), "surfel"));
+  EXPECT_TRUE(testing::mentions(renderer->programs(), "gaussian"));
+  EXPECT_FALSE(testing::mentions(renderer->programs(), "surfel"));
 }
 
 }  // namespace

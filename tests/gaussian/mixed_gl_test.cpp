@@ -101,7 +101,7 @@ GaussianModel before(const GaussianModel& model, double z) {
   return part;
 }
 
-const std::vector<glm::ivec2> kPixels{{48, 48}, {40, 55}, {60, 33}, {30, 30}, {70, 64}};
+const std::vector<glm::ivec2> kProbes{{48, 48}, {40, 55}, {60, 33}, {30, 30}, {70, 64}};
 
 TEST_F(SurfelsAndGaussiansGL, HideEachOtherAtEveryDepthAsTrained) {
   const GaussianModel fog = testing::in_single_precision(reference::make_gaussian_model("fog"));
@@ -109,7 +109,7 @@ TEST_F(SurfelsAndGaussiansGL, HideEachOtherAtEveryDepthAsTrained) {
     const picture::Image image = draw(*renderer_, with_plane(fog, z), request_of()).image;
     const reference::LightPicture front =
         reference::draw_as_trained(before(fog, z), frame(), reference::GaussianConvention::kTrained);
-    for (const glm::ivec2& at : kPixels) {
+    for (const glm::ivec2& at : kProbes) {
       const glm::dvec4 seen = front.pixels[front.index(at.x, at.y)];
       const glm::dvec3 expected = glm::dvec3(seen) + (1 - seen.w) * kPlane;
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(code_at(image, at)[c], expected[c], 0.006) << z << ' ' << at.x;
@@ -223,11 +223,6 @@ glm::dvec3 light_in_middle(const picture::Image& image) {
   return {p};
 }
 
-glm::dvec3 linear(const glm::dvec3& codes) {
-  return {reference::linear_from_srgb(codes.x), reference::linear_from_srgb(codes.y),
-          reference::linear_from_srgb(codes.z)};
-}
-
 /// A way to draw a plane in a cube, and what it leaves of them.
 struct Drawing {
   const char* name;
@@ -262,8 +257,8 @@ TEST_F(SurfelsAndGaussiansGL, APlaneInAVolumeIsSeenAtItsDepthHoweverItIsDrawn) {
     for (const Drawing& drawing : drawings_of_cube()) {
       const bool cut = z > drawing.nearest || z < drawing.farthest;
       const double through = through_cube(drawing.nearest, cut ? drawing.farthest : z);
-      const glm::dvec3 behind = cut ? glm::dvec3(0) : linear(kPlane);
-      const glm::dvec3 expected = (1 - through) * linear(kCube) + through * behind;
+      const glm::dvec3 behind = cut ? glm::dvec3(0) : reference::linear_from_srgb(kPlane);
+      const glm::dvec3 expected = (1 - through) * reference::linear_from_srgb(kCube) + through * behind;
       const glm::dvec3 found = light_in_middle(draw(*renderer_, built, drawing.request).image);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 3e-3) << z << ' ' << drawing.name;
     }
@@ -279,9 +274,9 @@ TEST_F(SurfelsAndGaussiansGL, ATransparentPlaneInAVolumeIsSeenThroughAtItsDepth)
     request.format = picture::PixelFormat::kLinearFloat;
     const double front = through_cube(1, z);
     const double back = through_cube(z, -1);
-    const glm::dvec3 behind = (1 - back) * linear(kCube);
-    const glm::dvec3 plane = kAlpha * linear(kPlane) + (1 - kAlpha) * behind;
-    const glm::dvec3 expected = (1 - front) * linear(kCube) + front * plane;
+    const glm::dvec3 behind = (1 - back) * reference::linear_from_srgb(kCube);
+    const glm::dvec3 plane = kAlpha * reference::linear_from_srgb(kPlane) + (1 - kAlpha) * behind;
+    const glm::dvec3 expected = (1 - front) * reference::linear_from_srgb(kCube) + front * plane;
     const picture::Image drawn = draw(*renderer_, built, request).image;
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(light_in_middle(drawn)[c], expected[c], 5e-3) << z;
     EXPECT_EQ(draw(*renderer_, built, request).image.pixels, drawn.pixels);
@@ -352,7 +347,10 @@ TEST_F(SurfelsAndGaussiansGL, AGaussianIsSeenThroughATransparentPlane) {
   const glm::dvec3 behind = with_plane_at(-1);
   const glm::dvec3 green = alpha * codes;
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(behind[c], green[c] + (1 - alpha) * reference::srgb_from_linear(0.4 * linear(kPlane)[c]), 0.02) << c;
+    EXPECT_NEAR(behind[c],
+                green[c] + (1 - alpha) * reference::srgb_from_linear(0.4 * reference::linear_from_srgb(kPlane)[c]),
+                0.02)
+        << c;
     EXPECT_GT(std::abs(before[c] - behind[c]), 0.02) << "the plane dims what is behind it";
   }
   EXPECT_LT(before.g, behind.g);
@@ -377,7 +375,7 @@ glm::dvec3 light_through(const std::vector<Slab>& slabs, double begin, double en
     for (const Slab& slab : slabs) {
       if (std::abs(z - slab.centre) > 1) continue;
       const double left = clear * std::pow(1 - slab.opacity, step);
-      light += (clear - left) * linear(slab.codes);
+      light += (clear - left) * reference::linear_from_srgb(slab.codes);
       clear = left;
     }
   }
@@ -425,15 +423,11 @@ TEST_F(SurfelsAndGaussiansGL, SurfacesAndClipBoxesStandInSeveralVolumesWhereThey
       if (nearest < 3) request.clip.outside.push_back({{-2, -2, nearest}, {2, 2, 4}});
       const bool cut = z > nearest;
       const glm::dvec3 found = light_in_middle(draw(*renderer_, built, request).image);
-      const glm::dvec3 expected =
-          light_through({kFirst, kSecond}, nearest, cut ? -3 : z, cut ? glm::dvec3(0) : linear(kPlane));
+      const glm::dvec3 expected = light_through({kFirst, kSecond}, nearest, cut ? -3 : z,
+                                                cut ? glm::dvec3(0) : reference::linear_from_srgb(kPlane));
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 5e-3) << z << ' ' << nearest;
     }
   }
-}
-
-bool mentions(const std::vector<std::string>& programs, const std::string& what) {
-  return std::ranges::any_of(programs, [&](const std::string& name) { return name.find(what) != std::string::npos; });
 }
 
 TEST_F(SurfelsAndGaussiansGL, AVolumeInViewAloneIsDrawnAsInAModelOfItAlone) {
@@ -441,11 +435,12 @@ TEST_F(SurfelsAndGaussiansGL, AVolumeInViewAloneIsDrawnAsInAModelOfItAlone) {
   const auto beside = write_cube(folder_ / "beside.nrrd", 50, 'z');  // behind the eye
   const ModelPointer alone = build({first});
   const ModelPointer both = build({first, beside});
-  const std::unique_ptr<render::Renderer> renderer = std::move(*render::Renderer::create({}));
+  renderer_.reset();  // one context at a time
+  renderer_ = std::move(*render::Renderer::create({}));
   const picture::PictureRequest request = request_of_two();
-  EXPECT_EQ(draw(*renderer, both, request).image.pixels, draw(*renderer, alone, request).image.pixels);
-  EXPECT_TRUE(mentions(renderer->programs(), "volume.comp"));
-  EXPECT_FALSE(mentions(renderer->programs(), "several"));
+  EXPECT_EQ(draw(*renderer_, both, request).image.pixels, draw(*renderer_, alone, request).image.pixels);
+  EXPECT_TRUE(testing::mentions(renderer_->programs(), "volume.comp"));
+  EXPECT_FALSE(testing::mentions(renderer_->programs(), "several"));
 }
 
 TEST_F(SurfelsAndGaussiansGL, APictureOfAScanIsTheSameInAModelOfSeveralKinds) {
@@ -461,8 +456,8 @@ TEST_F(SurfelsAndGaussiansGL, APictureOfAScanIsTheSameInAModelOfSeveralKinds) {
     request.silhouettes = silhouettes;
     EXPECT_EQ(draw(*renderer_, all, request).image.pixels, draw(*renderer_, alone, request).image.pixels);
   }
-  EXPECT_FALSE(mentions(renderer_->programs(), "volume"));
-  EXPECT_FALSE(mentions(renderer_->programs(), "gaussian"));
+  EXPECT_FALSE(testing::mentions(renderer_->programs(), "volume"));
+  EXPECT_FALSE(testing::mentions(renderer_->programs(), "gaussian"));
 }
 
 TEST_F(SurfelsAndGaussiansGL, AGaussianStandsInAVolumeWhereItIs) {

@@ -12,11 +12,6 @@ namespace {
 
 using testing::draw;
 
-glm::dvec3 linear(const glm::dvec3& codes) {
-  return {reference::linear_from_srgb(codes.x), reference::linear_from_srgb(codes.y),
-          reference::linear_from_srgb(codes.z)};
-}
-
 class GlyphsAmongOthersGL : public testing::MixedSceneFixture {
  protected:
   /// Linear light of the middle.
@@ -41,9 +36,9 @@ TEST_F(GlyphsAmongOthersGL, HideAndAreHiddenByGaussiansAsTrained) {
   const glm::dvec4 seen = alone.pixels[alone.index(kSide / 2, kSide / 2)];
   ASSERT_GT(seen.w, 0.7);
   // Programs that train Gaussians blend codes.
-  expect_light(picture_of({glyph(-0.5), splat()}, request), linear(glm::dvec3(seen) + (1 - seen.w) * kGlyph), 0.01,
-               "behind");
-  expect_light(picture_of({glyph(0.5), splat()}, request), linear(kGlyph), 0.005, "in front");
+  expect_light(picture_of({glyph(-0.5), splat()}, request),
+               reference::linear_from_srgb(glm::dvec3(seen) + (1 - seen.w) * kGlyph), 0.01, "behind");
+  expect_light(picture_of({glyph(0.5), splat()}, request), reference::linear_from_srgb(kGlyph), 0.005, "in front");
 }
 
 TEST_F(GlyphsAmongOthersGL, CutExactGaussiansWhereTheyStand) {
@@ -52,7 +47,7 @@ TEST_F(GlyphsAmongOthersGL, CutExactGaussiansWhereTheyStand) {
   for (const double z : {-1.2, -0.3, -0.1, 0.0, 0.15, 0.45}) {
     const double share = alpha * 0.5 * std::erfc(z / kDeviation / std::sqrt(2.0));
     expect_light(picture_of({glyph(z), splat()}, request_of(picture::SplatConvention::kExact)),
-                 linear(share * kSplat + (1 - share) * kGlyph), 0.012, number(z));
+                 reference::linear_from_srgb(share * kSplat + (1 - share) * kGlyph), 0.012, number(z));
   }
 }
 
@@ -62,7 +57,8 @@ TEST_F(GlyphsAmongOthersGL, StandInVolumesWhereTheyAre) {
   request.volumes.transfer.spacing = 1;
   for (const double z : {-1.5, -0.7, 0.0, 0.4, 1.2}) {
     const double through = std::pow(1 - kCubeOpacity, 1 - std::clamp(z, -1.0, 1.0));
-    const glm::dvec3 expected = (1 - through) * linear(kCube) + through * linear(kGlyph);
+    const glm::dvec3 expected =
+        (1 - through) * reference::linear_from_srgb(kCube) + through * reference::linear_from_srgb(kGlyph);
     for (const bool motion : {false, true}) {
       request.blends_behind = motion;
       expect_light(picture_of({cube(), glyph(z)}, request), expected, 5e-3, number(z));
@@ -84,9 +80,9 @@ TEST_F(GlyphsAmongOthersGL, CountInTheTimesOfProjectionAndListsBesideVolumes) {
 TEST_F(GlyphsAmongOthersGL, AreSeenThroughTransparentSurfels) {
   picture::PictureRequest request = request_of();
   request.class_opacities = {{5, 0.4}};
-  const glm::dvec3 mixed = 0.4 * linear(kPlane) + 0.6 * linear(kGlyph);
+  const glm::dvec3 mixed = 0.4 * reference::linear_from_srgb(kPlane) + 0.6 * reference::linear_from_srgb(kGlyph);
   expect_light(picture_of({plane(0.3), glyph(0)}, request), mixed, 0.012, "behind");
-  expect_light(picture_of({plane(-0.3), glyph(0)}, request), linear(kGlyph), 0.005, "in front");
+  expect_light(picture_of({plane(-0.3), glyph(0)}, request), reference::linear_from_srgb(kGlyph), 0.005, "in front");
 }
 
 TEST_F(GlyphsAmongOthersGL, AreSeenThroughTransparentSurfelsInVolumes) {
@@ -96,8 +92,10 @@ TEST_F(GlyphsAmongOthersGL, AreSeenThroughTransparentSurfelsInVolumes) {
   request.volumes.transfer.spacing = 1;
   const double before = std::pow(1 - kCubeOpacity, 0.7);   // from 1 to 0.3
   const double between = std::pow(1 - kCubeOpacity, 0.5);  // to -0.2
-  const glm::dvec3 behind = (1 - between) * linear(kCube) + between * linear(kGlyph);
-  const glm::dvec3 expected = (1 - before) * linear(kCube) + before * (0.4 * linear(kPlane) + 0.6 * behind);
+  const glm::dvec3 behind =
+      (1 - between) * reference::linear_from_srgb(kCube) + between * reference::linear_from_srgb(kGlyph);
+  const glm::dvec3 expected = (1 - before) * reference::linear_from_srgb(kCube) +
+                              before * (0.4 * reference::linear_from_srgb(kPlane) + 0.6 * behind);
   expect_light(picture_of({cube(), plane(0.3), glyph(-0.2)}, request), expected, 0.012, "all of them");
 }
 

@@ -85,14 +85,14 @@ Scene make_scene() {
 // ---- the scene as files
 
 std::filesystem::path write_scan(const std::filesystem::path& path, const Sheet& sheet) {
-  constexpr int kSide = 150;
+  constexpr int kCells = 150;
   const glm::dvec3 n = glm::cross(sheet.u, sheet.v);
   std::ostringstream text;
   text << std::setprecision(9) << "x,y,z,nx,ny,nz,red,green,blue\n";
-  for (int j = 0; j <= kSide; ++j) {
-    for (int i = 0; i <= kSide; ++i) {
+  for (int j = 0; j <= kCells; ++j) {
+    for (int i = 0; i <= kCells; ++i) {
       const glm::dvec3 p =
-          sheet.centre + sheet.half * ((2.0 * i / kSide - 1) * sheet.u + (2.0 * j / kSide - 1) * sheet.v);
+          sheet.centre + sheet.half * ((2.0 * i / kCells - 1) * sheet.u + (2.0 * j / kCells - 1) * sheet.v);
       text << p.x << ',' << p.y << ',' << p.z << ',' << n.x << ',' << n.y << ',' << n.z << ',' << sheet.codes.x << ','
            << sheet.codes.y << ',' << sheet.codes.z << '\n';
     }

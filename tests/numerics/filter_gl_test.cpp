@@ -12,14 +12,13 @@
 
 #include <gtest/gtest.h>
 
+#include "numerics/degree.h"
 #include "numerics/shader_bench.h"
 #include "reference/resampling_filter.h"
 #include "shared/kernel.h"
 
 namespace surfcast::testing {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// A surfel, its view and a pixel, in numbers that are exact in single precision.
 struct Sighting {

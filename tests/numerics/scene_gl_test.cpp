@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "numerics/degree.h"
 #include "numerics/numerics_fixture.h"
 #include "support/clouds.h"
 
 namespace surfcast::testing {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 picture::PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle, int width,
                                   int height) {

@@ -1,18 +1,16 @@
 // Single surfels in numerically difficult views, against the double precision reference.
 
 #include <cmath>
-#include <numbers>
 
+#include "numerics/degree.h"
 #include "numerics/numerics_fixture.h"
 #include "support/clouds.h"
 
 namespace surfcast::testing {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
-picture::PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle, int width,
-                                  int height) {
+picture::PictureRequest view_with_z_up(const glm::dvec3& eye, const glm::dvec3& target, double angle, int width,
+                                       int height) {
   picture::PictureRequest request;
   request.camera = geometry::Camera{eye, target, {0.1, 0.2, 0.97}, angle};
   request.width = width;
@@ -23,8 +21,8 @@ picture::PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& targe
 /// A view of the plane z = 0 at `degrees` from its normal.
 picture::PictureRequest view_at_incidence(double degrees, double distance) {
   const double angle = degrees * kDegree;
-  return view_from(distance * glm::dvec3(std::sin(angle) * 0.6, std::sin(angle) * 0.8, std::cos(angle)), {0, 0, 0}, 30,
-                   160, 120);
+  return view_with_z_up(distance * glm::dvec3(std::sin(angle) * 0.6, std::sin(angle) * 0.8, std::cos(angle)), {0, 0, 0},
+                        30, 160, 120);
 }
 
 /// The coverage of an edge-on surfel, down to a millionth of a pixel, must have a relative error of at most 1 %.
@@ -91,7 +89,7 @@ TEST_F(NumericsGLTest, SurfelsAstrideAndBehindTheEyesPlane) {
   paint_motley(cloud);
   const ModelPointer& model = model_of(cloud);
   for (const double offset : {0.0, 0.5, 0.9, 0.97, 0.99, 0.999}) {
-    const picture::PictureRequest request = view_from({offset, 0, 0}, {offset + 0.3, 1, 0.2}, 100, 160, 120);
+    const picture::PictureRequest request = view_with_z_up({offset, 0, 0}, {offset + 0.3, 1, 0.2}, 100, 160, 120);
     expect_within(difference("within a sphere at " + std::to_string(offset), model, request), kMagnified);
   }
 }
@@ -99,7 +97,7 @@ TEST_F(NumericsGLTest, SurfelsAstrideAndBehindTheEyesPlane) {
 TEST_F(NumericsGLTest, OneSurfelOverTheWholeScreen) {
   const ModelPointer& model = model_of(single_surfel({0, 0, 0}, {0.3, -0.2, 1}, 1, {10, 200, 30}));
   for (const double distance : {3.0, 1.0, 0.3, 0.05, 1e-3, 1e-6}) {
-    const picture::PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 60, 160, 120);
+    const picture::PictureRequest request = view_with_z_up({0, 0, distance}, {0, 0, 0}, 60, 160, 120);
     expect_within(difference("one surfel from " + std::to_string(distance), model, request), kRounding);
   }
 }

@@ -18,20 +18,20 @@
 namespace surfcast::pick {
 namespace {
 
-const surfel::Grid kUtm{{0.001, 0.001, 0.001}, {1'448'262, 5'411'932, 0}};
+const surfel::Grid kTerrainGrid{{0.001, 0.001, 0.001}, {1'448'262, 5'411'932, 0}};
 
 /// 90,000 points on a lattice far from the origin, each with its number as an attribute.
-surfel::SurfelCloud survey() {
+surfel::SurfelCloud terrain() {
   surfel::SurfelCloud cloud = testing::square(300, 120, {0, 0, 0}, {0, 0, 1}, {10, 20, 30});
   std::vector<uint32_t> numbers;
   for (size_t i = 0; i < cloud.size(); ++i) {
     glm::dvec3& p = cloud.positions[i];
     p.z = 4 * std::sin(0.2 * p.x) * std::cos(0.13 * p.y);
-    p = kUtm.position(kUtm.index(p + kUtm.offset));
+    p = kTerrainGrid.position(kTerrainGrid.index(p + kTerrainGrid.offset));
     cloud.colors->values[i] = {static_cast<uint16_t>(i % 251), static_cast<uint16_t>(i % 241), 7};
     numbers.push_back(static_cast<uint32_t>(i));
   }
-  cloud.sources[0].grid = kUtm;
+  cloud.sources[0].grid = kTerrainGrid;
   cloud.scalars = {{"number", numbers}};
   return cloud;
 }
@@ -79,11 +79,12 @@ std::optional<std::array<double, 2>> brute_force(const std::vector<glm::dvec2>& 
 }
 
 TEST_F(FindBand, HasExactlyThePointsOfTheSourceNearTheLine) {
-  const surfel::SurfelCloud cloud = survey();
+  const surfel::SurfelCloud cloud = terrain();
   const model::ModelFile model = model_of(cloud);
   ASSERT_GT(model.blocks().size(), 2U);
-  const std::vector<glm::dvec3> line{kUtm.offset + glm::dvec3(-40.1, -35, 900), kUtm.offset + glm::dvec3(10, 5.3, -7),
-                                     kUtm.offset + glm::dvec3(10, 5.3, 50), kUtm.offset + glm::dvec3(-12, 41, 0)};
+  const std::vector<glm::dvec3> line{
+      kTerrainGrid.offset + glm::dvec3(-40.1, -35, 900), kTerrainGrid.offset + glm::dvec3(10, 5.3, -7),
+      kTerrainGrid.offset + glm::dvec3(10, 5.3, 50), kTerrainGrid.offset + glm::dvec3(-12, 41, 0)};
   const std::vector<glm::dvec2> course{glm::dvec2(line[0]), glm::dvec2(line[1]), glm::dvec2(line[3])};
   const Band band = find(model, {line, 3.7, cloud.size()});
   std::map<uint32_t, double> expected;
@@ -96,7 +97,7 @@ TEST_F(FindBand, HasExactlyThePointsOfTheSourceNearTheLine) {
   ASSERT_EQ(band.points.size(), expected.size());
   ASSERT_EQ(band.values.size(), expected.size());
   EXPECT_NEAR(band.length, glm::distance(course[0], course[1]) + glm::distance(course[1], course[2]), 1e-9);
-  EXPECT_EQ(band.grid, kUtm);
+  EXPECT_EQ(band.grid, kTerrainGrid);
   for (size_t i = 0; i < band.points.size(); ++i) {
     const auto number = static_cast<uint32_t>(band.values[i]);
     ASSERT_TRUE(expected.contains(number)) << number;
@@ -113,8 +114,9 @@ TEST_F(FindBand, HasExactlyThePointsOfTheSourceNearTheLine) {
 }
 
 TEST_F(FindBand, BeyondItsLimitIsAnEvenSampleThatIsAlwaysTheSame) {
-  const model::ModelFile model = model_of(survey());
-  const BandQuery query{{kUtm.offset - glm::dvec3(55, 0, 0), kUtm.offset + glm::dvec3(55, 0, 0)}, 20, 3000};
+  const model::ModelFile model = model_of(terrain());
+  const BandQuery query{
+      {kTerrainGrid.offset - glm::dvec3(55, 0, 0), kTerrainGrid.offset + glm::dvec3(55, 0, 0)}, 20, 3000};
   const Band band = find(model, query);
   EXPECT_GT(band.total, 10000U);
   ASSERT_EQ(band.points.size(), 3000U);

@@ -21,7 +21,7 @@ namespace {
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 
-const glm::dvec3 kUtm(1'048'262.25, 5'411'932.5, 312);
+const glm::dvec3 kUtmOrigin(1'048'262.25, 5'411'932.5, 312);
 
 /// A sphere of two classes above a floor, so that there are silhouettes, and much is hidden.
 surfel::SurfelCloud scene(const glm::dvec3& origin) {
@@ -99,41 +99,42 @@ int compare(const model::ModelFile& model, kinds::PickQuery query, int count) {
 }
 
 TEST_F(FrontSurface, IsWhatPicksFindInAThousandPixelsFarFromTheOrigin) {
-  const model::ModelFile model = model_of(scene(kUtm));
+  const model::ModelFile model = model_of(scene(kUtmOrigin));
   ASSERT_GT(model.blocks().size(), 2U);
-  const geometry::Camera oblique{kUtm + glm::dvec3(150, -260, 120), kUtm, {0, 0, 1}, 35};
+  const geometry::Camera oblique{kUtmOrigin + glm::dvec3(150, -260, 120), kUtmOrigin, {0, 0, 1}, 35};
   EXPECT_GT(compare(model, query_of(oblique), 1000), 300);
 }
 
 TEST_F(FrontSurface, IsWhatPicksFindWithinTheScene) {
-  const model::ModelFile model = model_of(scene(kUtm));
-  const geometry::Camera low{kUtm + glm::dvec3(60, 60, -58), kUtm + glm::dvec3(0, 0, -50), {0, 0, 1}, 80};
+  const model::ModelFile model = model_of(scene(kUtmOrigin));
+  const geometry::Camera low{kUtmOrigin + glm::dvec3(60, 60, -58), kUtmOrigin + glm::dvec3(0, 0, -50), {0, 0, 1}, 80};
   EXPECT_GT(compare(model, query_of(low), 1000), 300);
-  surfel::SurfelCloud sides = scene(kUtm);
+  surfel::SurfelCloud sides = scene(kUtmOrigin);
   sides.oriented = false;
-  const geometry::Camera below{kUtm + glm::dvec3(3, 4, -61.5), kUtm + glm::dvec3(0, 0, -60), {0, 0, 1}, 120};
+  const geometry::Camera below{
+      kUtmOrigin + glm::dvec3(3, 4, -61.5), kUtmOrigin + glm::dvec3(0, 0, -60), {0, 0, 1}, 120};
   EXPECT_GT(compare(model_of(sides), query_of(below), 1000), 100);
 }
 
 TEST_F(FrontSurface, LooksThroughClipsAndHiddenClasses) {
-  const model::ModelFile model = model_of(scene(kUtm));
-  kinds::PickQuery query = query_of({kUtm + glm::dvec3(150, -260, 120), kUtm, {0, 0, 1}, 35});
-  query.clip.inside.push_back({kUtm - glm::dvec3(90, 90, 70), kUtm + glm::dvec3(90, 90, 20)});
-  query.clip.outside.push_back({kUtm - glm::dvec3(15, 50, 50), kUtm + glm::dvec3(15, 50, 50)});
+  const model::ModelFile model = model_of(scene(kUtmOrigin));
+  kinds::PickQuery query = query_of({kUtmOrigin + glm::dvec3(150, -260, 120), kUtmOrigin, {0, 0, 1}, 35});
+  query.clip.inside.push_back({kUtmOrigin - glm::dvec3(90, 90, 70), kUtmOrigin + glm::dvec3(90, 90, 20)});
+  query.clip.outside.push_back({kUtmOrigin - glm::dvec3(15, 50, 50), kUtmOrigin + glm::dvec3(15, 50, 50)});
   query.hidden_classes.set(2);
   EXPECT_GT(compare(model, query, 1000), 100);
 }
 
 TEST_F(FrontSurface, LooksThroughWhatLetsMostLightThrough) {
-  const model::ModelFile model = model_of(scene(kUtm));
-  kinds::PickQuery query = query_of({kUtm + glm::dvec3(150, -260, 120), kUtm, {0, 0, 1}, 35});
+  const model::ModelFile model = model_of(scene(kUtmOrigin));
+  kinds::PickQuery query = query_of({kUtmOrigin + glm::dvec3(150, -260, 120), kUtmOrigin, {0, 0, 1}, 35});
   query.transparent = true;
   query.class_opacities.assign(256, 0.3);
   query.class_opacities[2] = 0.1;
   EXPECT_GT(compare(model, query, 300), 10) << "surfels of several sheets together";
   query.opacity = 0.9;
   query.class_opacities.clear();
-  query.clip.outside.push_back({kUtm - glm::dvec3(50, 50, 50), kUtm + glm::dvec3(50, 50, 50)});
+  query.clip.outside.push_back({kUtmOrigin - glm::dvec3(50, 50, 50), kUtmOrigin + glm::dvec3(50, 50, 50)});
   query.ghost = 0.1;
   EXPECT_GT(compare(model, query, 300), 30) << "the floor behind a ghost";
 }
@@ -146,8 +147,8 @@ TEST_F(FrontSurface, IsTheSameInPicturesOfSeveralRegions) {
 
 // The tangent plane of the reference is exact. Surfels lie on it, so the error is that of their coded normals.
 TEST_F(FrontSurface, OfAPlaneAtAGrazingAngleHasThePlanesDepth) {
-  const model::ModelFile model = model_of(testing::square(400, 100, kUtm, {0, 0, 1}, {9, 9, 9}));
-  const geometry::Camera grazing{kUtm + glm::dvec3(0, -70, 3), kUtm, {0, 0, 1}, 40};
+  const model::ModelFile model = model_of(testing::square(400, 100, kUtmOrigin, {0, 0, 1}, {9, 9, 9}));
+  const geometry::Camera grazing{kUtmOrigin + glm::dvec3(0, -70, 3), kUtmOrigin, {0, 0, 1}, 40};
   const kinds::PickQuery query = query_of(grazing);
   const std::vector<FrontPixel> front = search(model, query);
   const double spacing = 0.25;
@@ -158,7 +159,7 @@ TEST_F(FrontSurface, OfAPlaneAtAGrazingAngleHasThePlanesDepth) {
       const glm::dvec3 ray = query.frame.ray({x + 0.5, y + 0.5});
       const glm::dvec3 direction = query.frame.right * ray.x + query.frame.up * ray.y + query.frame.forward;
       const double depth = direction.z < 0 ? 3 / -direction.z : INFINITY;
-      const glm::dvec3 at = query.frame.eye + depth * direction - kUtm;
+      const glm::dvec3 at = query.frame.eye + depth * direction - kUtmOrigin;
       const bool within = std::max(std::abs(at.x), std::abs(at.y)) < 49;
       if (!within) continue;
       ++compared;

@@ -4,17 +4,16 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numeric>
 
 #include "reference/affine_kernel.h"
+#include "reference/infinity.h"
 #include "reference/ray_kernel.h"
 #include "reference/transfer_function.h"
 
 namespace surfcast::reference {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTrainedTile = 16;    ///< pixels
 constexpr int kTile = 8;            ///< of exact pictures, pixels
 constexpr int kBorder = 5;          ///< pixels about an exact picture in which there may be rays

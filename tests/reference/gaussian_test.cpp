@@ -1,6 +1,5 @@
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -8,12 +7,12 @@
 
 #include "reference/gaussian_model.h"
 #include "reference/gaussian_renderer.h"
+#include "reference/infinity.h"
 
 namespace surfcast::reference {
 namespace {
 
 constexpr int kSide = 48;  // pixels
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 geometry::CameraFrame look(const glm::dvec3& eye, const glm::dvec3& focal, double view_angle, int side = kSide) {
   geometry::Camera camera;

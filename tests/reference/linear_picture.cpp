@@ -26,8 +26,12 @@ double srgb_from_linear(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
+glm::dvec3 linear_from_srgb(const glm::dvec3& encoded) {
+  return {linear_from_srgb(encoded.x), linear_from_srgb(encoded.y), linear_from_srgb(encoded.z)};
+}
+
 glm::dvec3 linear_from_srgb8(const glm::dvec3& levels) {
-  return {linear_from_srgb(levels.x / 255), linear_from_srgb(levels.y / 255), linear_from_srgb(levels.z / 255)};
+  return linear_from_srgb(levels / 255.0);
 }
 
 glm::u8vec3 srgb8_from_linear(const glm::dvec3& linear) {

@@ -27,6 +27,7 @@ struct SrgbPicture {
 
 /// The sRGB transfer function (IEC 61966-2-1) on values in [0, 1].
 double linear_from_srgb(double encoded);
+glm::dvec3 linear_from_srgb(const glm::dvec3& encoded);
 double srgb_from_linear(double linear);
 glm::dvec3 linear_from_srgb8(const glm::dvec3& levels);  ///< levels 0 to 255
 glm::u8vec3 srgb8_from_linear(const glm::dvec3& linear);

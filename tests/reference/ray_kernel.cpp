@@ -4,15 +4,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <numbers>
+
+#include "reference/infinity.h"
 
 namespace surfcast::reference {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double square(const glm::dvec3& v) {
+double squared_length(const glm::dvec3& v) {
   return glm::dot(v, v);
 }
 
@@ -41,7 +40,7 @@ RayKernel::RayKernel(const glm::dvec3& centre, const glm::dmat3& factor, double 
       determinant_(std::abs(glm::determinant(factor))),
       pixel_(prefilter / eta),
       p_(pixel_ * o_.z * pixel_ * o_.z),
-      flattened_(square(adjugate_[0]) + square(adjugate_[1])) {}
+      flattened_(squared_length(adjugate_[0]) + squared_length(adjugate_[1])) {}
 
 // With B = A V A^T, S in units of (eta / o.z)^2 is B + p I, and for 2 x 2 matrices adj(B + p I) = adj(B) + p I:
 //   det S0      = det B = |adj(M) d|^2                              (Cauchy-Binet)
@@ -54,36 +53,36 @@ KernelOnRay RayKernel::on_ray(const glm::dvec3& d) const {
   const glm::dvec3 a2 = transposed_ * glm::dvec3(0, 1, -d.y);
   const glm::dvec3& a3 = transposed_[2];
   const glm::dvec2 w{o_.z * d.x - o_.x, o_.z * d.y - o_.y};
-  const double trace = square(a1) + square(a2);
+  const double trace = squared_length(a1) + squared_length(a2);
   const glm::dvec3 ad = adjugate_ * d;
-  const double det0 = square(ad);
+  const double det0 = squared_length(ad);
   const double det = det0 + p_ * trace + p_ * p_;
   if (!(det > 0)) return {kInfinity, 0, 0, o_.z, 0};
   KernelOnRay result;
-  result.r2 = (square(transposed_ * glm::cross(d, o_)) + p_ * glm::dot(w, w)) / det;
+  result.r2 = (squared_length(transposed_ * glm::cross(d, o_)) + p_ * glm::dot(w, w)) / det;
   const double value = std::exp(-0.5 * result.r2);
   result.length = std::sqrt(2 * std::numbers::pi / det) * determinant_ * glm::length(d) * value;
   result.gain = std::sqrt(det0 / det) * value;
   const double shift = glm::dot(a1, a3) * w.x + glm::dot(a2, a3) * w.y;
   result.depth = (glm::dot(ad, adjugate_ * o_) + p_ * (o_.z * trace + shift) + p_ * p_ * o_.z) / det;
-  const double variance = (determinant_ * determinant_ + p_ * flattened_ + p_ * p_ * square(a3)) / det;
+  const double variance = (determinant_ * determinant_ + p_ * flattened_ + p_ * p_ * squared_length(a3)) / det;
   result.deviation = std::sqrt(variance);
   return result;
 }
 
 bool RayKernel::behind(double cutoff) const {
-  return o_.z <= -std::sqrt(cutoff * square(transposed_[2]));
+  return o_.z <= -std::sqrt(cutoff * squared_length(transposed_[2]));
 }
 
 // r2 <= c requires v_x^2 <= c S_xx (and the same for y), both taken at the pixel: a quadratic in d.x. For an ellipse
 // the bound is attained.
 std::optional<RayKernel::Bounds> RayKernel::bounds(double cutoff) const {
-  const double a = o_.z * o_.z - cutoff * square(transposed_[2]);
+  const double a = o_.z * o_.z - cutoff * squared_length(transposed_[2]);
   if (!(a > 0)) return std::nullopt;
   Bounds result{};
   for (int i = 0; i < 2; ++i) {
     const double half_b = o_[i] * o_.z - cutoff * glm::dot(transposed_[i], transposed_[2]);
-    const double c = o_[i] * o_[i] - cutoff * (square(transposed_[i]) + p_);
+    const double c = o_[i] * o_[i] - cutoff * (squared_length(transposed_[i]) + p_);
     const double root = std::sqrt(std::max(0.0, half_b * half_b - a * c));
     result.min[i] = (half_b - root) / a;
     result.max[i] = (half_b + root) / a;

@@ -16,7 +16,7 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr double kEta = 500;  // pixels per unit of tangent
+constexpr double kRayEta = 500;  // pixels per unit of tangent
 
 glm::dmat3 rotated(const glm::dvec3& deviations, const glm::dvec3& axis, double angle) {
   const glm::dmat3 rotation = glm::mat3_cast(glm::angleAxis(angle, glm::normalize(axis)));
@@ -66,7 +66,7 @@ std::vector<Case> cases() {
 TEST(RayKernel, IsTheIntegralAlongTheRayWhereverTheEyeIs) {
   for (const Case& c : cases()) {
     const Quadrature expected = integrate(c.o, c.factor, c.d, -12, 12);
-    const KernelOnRay seen = RayKernel(c.o, c.factor, kEta, 0).on_ray(c.d);
+    const KernelOnRay seen = RayKernel(c.o, c.factor, kRayEta, 0).on_ray(c.d);
     EXPECT_NEAR(seen.length / expected.length, 1, 1e-6) << c.what;
     EXPECT_NEAR(seen.depth, expected.depth, 1e-5) << c.what;
   }
@@ -74,7 +74,7 @@ TEST(RayKernel, IsTheIntegralAlongTheRayWhereverTheEyeIs) {
 
 TEST(RayKernel, SharesAreTheIntegralsBetweenDepths) {
   for (const Case& c : cases()) {
-    const KernelOnRay seen = RayKernel(c.o, c.factor, kEta, 0).on_ray(c.d);
+    const KernelOnRay seen = RayKernel(c.o, c.factor, kRayEta, 0).on_ray(c.d);
     const double z0 = seen.depth - 0.4 * seen.deviation;
     const double z1 = seen.depth + 1.3 * seen.deviation;
     const double part = integrate(c.o, c.factor, c.d, z0, z1).length;
@@ -84,7 +84,7 @@ TEST(RayKernel, SharesAreTheIntegralsBetweenDepths) {
 
 TEST(RayKernel, SharesOfSlabsAddUpToTheKernel) {
   const KernelOnRay seen =
-      RayKernel({0.3, -0.2, 4}, rotated({0.3, 0.2, 0.5}, {1, 2, -1}, 0.8), kEta, 1).on_ray({0.1, -0.02, 1});
+      RayKernel({0.3, -0.2, 4}, rotated({0.3, 0.2, 0.5}, {1, 2, -1}, 0.8), kRayEta, 1).on_ray({0.1, -0.02, 1});
   double sum = 0;
   for (int slab = 0; slab < 80; ++slab) sum += share_between(seen, 0.1 * slab, 0.1 * (slab + 1));
   EXPECT_NEAR(sum, 1, 1e-12);
@@ -101,7 +101,7 @@ TEST(RayKernel, WithoutThicknessIsTheHitOfRayAndDisc) {
     const double t = glm::dot(axes[2], o) / glm::dot(axes[2], d);
     const double u = glm::dot(t * d - o, axes[0]) / 0.4;
     const double v = glm::dot(t * d - o, axes[1]) / 0.3;
-    const KernelOnRay seen = RayKernel(o, {0.4 * axes[0], 0.3 * axes[1], glm::dvec3(0)}, kEta, 0).on_ray(d);
+    const KernelOnRay seen = RayKernel(o, {0.4 * axes[0], 0.3 * axes[1], glm::dvec3(0)}, kRayEta, 0).on_ray(d);
     EXPECT_NEAR(seen.r2 / (u * u + v * v), 1, 1e-9);
     EXPECT_NEAR(seen.depth, t, 1e-9 * (1 + std::abs(t)));
     EXPECT_NEAR(seen.deviation, 0, 1e-7);
@@ -112,9 +112,9 @@ TEST(RayKernel, WithoutThicknessIsTheHitOfRayAndDisc) {
 TEST(RayKernel, WithAPrefilterIsTheIntegralsOfTheRaysAroundFiltered) {
   const glm::dvec3 o{0.2, 0.1, 5};
   const glm::dmat3 factor = rotated({0.02, 0.006, 0.03}, {1, 2, -1}, 0.8);  // 2 px by 0.6 px
-  const RayKernel sharp(o, factor, kEta, 0);
+  const RayKernel sharp(o, factor, kRayEta, 0);
   for (const double offset : {0.0, 1.0, 2.5}) {
-    const glm::dvec3 d{o.x / o.z + offset / kEta, o.y / o.z - 0.5 * offset / kEta, 1};
+    const glm::dvec3 d{o.x / o.z + offset / kRayEta, o.y / o.z - 0.5 * offset / kRayEta, 1};
     double sum = 0;
     double weights = 0;
     for (int row = -50; row <= 50; ++row) {
@@ -123,10 +123,10 @@ TEST(RayKernel, WithAPrefilterIsTheIntegralsOfTheRaysAroundFiltered) {
         const double y = 0.1 * row;
         const double weight = std::exp(-0.5 * (x * x + y * y));
         weights += weight;
-        sum += weight * sharp.on_ray(d + glm::dvec3(x, y, 0) / kEta).length;
+        sum += weight * sharp.on_ray(d + glm::dvec3(x, y, 0) / kRayEta).length;
       }
     }
-    EXPECT_NEAR(RayKernel(o, factor, kEta, 1).on_ray(d).length / (sum / weights), 1, 0.01) << offset;
+    EXPECT_NEAR(RayKernel(o, factor, kRayEta, 1).on_ray(d).length / (sum / weights), 1, 0.01) << offset;
   }
 }
 
@@ -138,7 +138,7 @@ TEST(RayKernel, BoundsHoldEveryRayWithinTheCutoffAndNoMore) {
     const glm::dvec3 o{2 * uniform(random), 2 * uniform(random), 1.5 + uniform(random)};
     const glm::dmat3 factor = rotated({0.2, 0.02, 0.1 + 0.09 * uniform(random)},
                                       {uniform(random), uniform(random), 1.1}, 3 * uniform(random));
-    const RayKernel kernel(o, factor, kEta, 1);
+    const RayKernel kernel(o, factor, kRayEta, 1);
     const auto bounds = kernel.bounds(kCutoff);
     if (!bounds) continue;
     const glm::dvec2 size = bounds->max - bounds->min;
@@ -163,16 +163,16 @@ TEST(RayKernel, BoundsHoldEveryRayWithinTheCutoffAndNoMore) {
 
 TEST(RayKernel, HasNoBoundsWhereItReachesTheEyesPlane) {
   const glm::dmat3 factor(0.1);
-  EXPECT_TRUE(RayKernel({0, 0, 0.31}, factor, kEta, 1).bounds(9).has_value());
-  EXPECT_FALSE(RayKernel({0, 0, 0.29}, factor, kEta, 1).bounds(9).has_value());
-  EXPECT_FALSE(RayKernel({0, 0, -0.29}, factor, kEta, 1).behind(9));
-  EXPECT_TRUE(RayKernel({0, 0, -0.31}, factor, kEta, 1).behind(9));
+  EXPECT_TRUE(RayKernel({0, 0, 0.31}, factor, kRayEta, 1).bounds(9).has_value());
+  EXPECT_FALSE(RayKernel({0, 0, 0.29}, factor, kRayEta, 1).bounds(9).has_value());
+  EXPECT_FALSE(RayKernel({0, 0, -0.29}, factor, kRayEta, 1).behind(9));
+  EXPECT_TRUE(RayKernel({0, 0, -0.31}, factor, kRayEta, 1).behind(9));
 }
 
 TEST(RayKernel, OfDegenerateShapesIsFiniteOrNowhere) {
   const glm::dvec3 d{0.1, 0.2, 1};
   const auto seen = [&](const glm::dvec3& o, const glm::dmat3& factor, double prefilter) {
-    return RayKernel(o, factor, kEta, prefilter).on_ray(d);
+    return RayKernel(o, factor, kRayEta, prefilter).on_ray(d);
   };
   EXPECT_FALSE(seen({0, 0, 1}, glm::dmat3(0), 0).r2 <= 9) << "a point without a prefilter";
   EXPECT_TRUE(std::isfinite(seen({0.1, 0.2, 1}, glm::dmat3(0), 1).r2)) << "a point";
@@ -190,9 +190,9 @@ struct OneKernel {
   double affine = 0;
 };
 OneKernel one_kernel(const glm::dvec3& o, const glm::dmat3& factor, double eta, const glm::dvec2& centre) {
-  constexpr int kSide = 128;
+  constexpr int kPictureSide = 128;
   const auto ray = [&](const glm::dvec2& pixel) {
-    const glm::dvec2 at = (pixel - 0.5 * kSide) / eta;
+    const glm::dvec2 at = (pixel - 0.5 * kPictureSide) / eta;
     return glm::dvec3(centre.x + at.x, centre.y - at.y, 1);
   };
   const RayKernel sharp(o, factor, eta, 0);
@@ -200,10 +200,11 @@ OneKernel one_kernel(const glm::dvec3& o, const glm::dmat3& factor, double eta, 
   const double peak = 1.5 / sharp.on_ray({centre, 1}).length;
   const auto light = [&](double length) { return glm::dvec4(1 - std::exp(-peak * length)); };
   const auto before_eye = [](const KernelOnRay& seen) { return seen.length * share_between(seen, 0, 1e9); };
-  const LightPicture ideal = prefiltered_picture(
-      kSide, kSide, 3, [&](const glm::dvec2& pixel) { return light(before_eye(sharp.on_ray(ray(pixel)))); });
+  const LightPicture ideal = prefiltered_picture(kPictureSide, kPictureSide, 3, [&](const glm::dvec2& pixel) {
+    return light(before_eye(sharp.on_ray(ray(pixel))));
+  });
   const auto against_ideal = [&](const LightSampler& sample) {
-    return covered_psnr(sampled_picture(kSide, kSide, sample), ideal);
+    return covered_psnr(sampled_picture(kPictureSide, kPictureSide, sample), ideal);
   };
   OneKernel errors;
   errors.exact = against_ideal([&](const auto& pixel) { return light(before_eye(exact.on_ray(ray(pixel)))); });

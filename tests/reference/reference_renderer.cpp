@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 
 #include <tbb/blocked_range2d.h>
@@ -14,6 +13,7 @@
 
 #include "base/contract.h"
 #include "reference/headlight.h"
+#include "reference/infinity.h"
 #include "reference/silhouettes.h"
 #include "surfel/even_sampling.h"
 
@@ -23,7 +23,6 @@ namespace {
 constexpr int kTile = 16;  ///< pixels
 constexpr int kMaxLayers = 8;
 constexpr double kOpaque = 1.0 / 128;  ///< transmittance below which no further layer is drawn
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNoPrefilter = 0.01;  ///< pixels; a negligible blur that keeps r2 finite for edge-on surfels
 
 /// A surfel prepared for drawing: its splat and its contribution.

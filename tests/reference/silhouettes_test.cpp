@@ -7,26 +7,26 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kSide = 16;
-constexpr double kEta = 1000;  // pixels per unit of tangent
+constexpr int kEdgeSide = 16;
+constexpr double kEdgeEta = 1000;  // pixels per unit of tangent
 
-/// Inverse depths of a picture of kSide x kSide pixels.
+/// Inverse depths of a picture of kEdgeSide x kEdgeSide pixels.
 template <typename InverseDepth>
 std::vector<double> picture(const InverseDepth& inverse_depth) {
   std::vector<double> fronts;
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) fronts.push_back(inverse_depth(x, y));
+  for (int y = 0; y < kEdgeSide; ++y) {
+    for (int x = 0; x < kEdgeSide; ++x) fronts.push_back(inverse_depth(x, y));
   }
   return fronts;
 }
 
 /// Columns with a pixel at a silhouette, in order.
 std::vector<int> columns_found(const std::vector<double>& fronts) {
-  const std::vector<bool> found = silhouettes(fronts, kSide, kEta, {});
+  const std::vector<bool> found = silhouettes(fronts, kEdgeSide, kEdgeEta, {});
   std::vector<int> columns;
-  for (int x = 0; x < kSide; ++x) {
-    for (int y = 0; y < kSide; ++y) {
-      if (!found[static_cast<size_t>(y) * kSide + x]) continue;
+  for (int x = 0; x < kEdgeSide; ++x) {
+    for (int y = 0; y < kEdgeSide; ++y) {
+      if (!found[static_cast<size_t>(y) * kEdgeSide + x]) continue;
       columns.push_back(x);
       break;
     }
@@ -47,7 +47,7 @@ TEST(Silhouettes, AreNotOnPlanesHoweverSteep) {
 }
 
 TEST(Silhouettes, AreNotAtStepsOfAFewPixelFootprints) {
-  const double footprints = 0.5 * SURFCAST_SILHOUETTE_JUMP / kEta;
+  const double footprints = 0.5 * SURFCAST_SILHOUETTE_JUMP / kEdgeEta;
   EXPECT_TRUE(columns_found(picture([&](int x, int) { return x < 8 ? 0.2 : 0.2 * (1 - footprints); })).empty());
   EXPECT_FALSE(columns_found(picture([&](int x, int) { return x < 8 ? 0.2 : 0.2 * (1 - 4 * footprints); })).empty());
 }

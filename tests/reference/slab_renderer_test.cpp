@@ -12,7 +12,7 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kSide = 32;  // pixels
+constexpr int kSlabSide = 32;  // pixels
 constexpr double kExtinction = 0.9;
 
 /// Of a constant 0.6 in a box from -1 to 1, 5 samples along each axis.
@@ -26,12 +26,12 @@ TransferFunction fog() {
   return {{{0.5, {1, 0.5, 0.25}, 0}, {0.5, {1, 0.5, 0.25}, opacity}}, 1};
 }
 
-geometry::CameraFrame look(const glm::dvec3& eye, const glm::dvec3& focal, double view_angle) {
+geometry::CameraFrame slab_view(const glm::dvec3& eye, const glm::dvec3& focal, double view_angle) {
   geometry::Camera camera;
   camera.position = eye;
   camera.focal_point = focal;
   camera.view_angle = view_angle;
-  return *geometry::make_camera_frame(camera, kSide, kSide);
+  return *geometry::make_camera_frame(camera, kSlabSide, kSlabSide);
 }
 
 SlabParameters unfiltered() {
@@ -62,14 +62,14 @@ double in_box(const VolumeGrid& grid, const glm::dvec3& eye, const glm::dvec3& d
 TEST(SlabRenderer, DrawsAConstantFieldAsFogUpToItsFaces) {
   const VolumeGrid grid = constant_grid();
   for (const glm::dvec3& eye : {glm::dvec3(1.3, 1.1, 3), glm::dvec3(0.2, 0.1, 0.9), glm::dvec3(0, 0, 1)}) {
-    const geometry::CameraFrame frame = look(eye, {0.1, 0, -0.2}, 60);
+    const geometry::CameraFrame frame = slab_view(eye, {0.1, 0, -0.2}, 60);
     const LightPicture picture = draw_slabs(grid, 0, fog(), frame, unfiltered()).picture;
     EXPECT_LT(largest_error(picture, frame, [&](const auto& d) { return in_box(grid, eye, d); }), 1e-9);
   }
 }
 
 TEST(SlabRenderer, DrawsOneColourToTheBitWhateverTheScalar) {
-  const geometry::CameraFrame frame = look({0.2, 0.1, 0.3}, {0.1, 0, -0.2}, 60);
+  const geometry::CameraFrame frame = slab_view({0.2, 0.1, 0.3}, {0.1, 0, -0.2}, 60);
   const TransferFunction transfer({{0.5, {1, 0.5, 0.25}, 1}}, 0.01);
   const SrgbPicture picture = encode(draw_slabs(constant_grid(), 0, transfer, frame).picture);
   for (const glm::u8vec3& p : picture.pixels) EXPECT_EQ(p, picture.pixels.front());
@@ -88,7 +88,7 @@ VolumeScene tissue_scene(const glm::dvec3& eye) {
                      {0.5, {1, 0.95, 0.9}, 0.1},
                      {0.53, {0.95, 0.6, 0.2}, 0.05}},
                     2.0 / 31};
-  scene.frame = look(eye, {0, 0, 0}, 36);
+  scene.frame = slab_view(eye, {0, 0, 0}, 36);
   return scene;
 }
 
@@ -104,7 +104,7 @@ TEST(SlabRenderer, ShowsNoLatticeInANarrowWindowOfValues) {
 }
 
 TEST(SlabRenderer, DoesNotDependOnTheValueThatSumsAreRelativeTo) {
-  const VolumeScene scene = make_volume_scene("blobs", "mid", glm::ivec3(16), kSide);
+  const VolumeScene scene = make_volume_scene("blobs", "mid", glm::ivec3(16), kSlabSide);
   const LightPicture expected = draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture;
   EXPECT_GT(linear_psnr(draw_slabs(scene.grid, 0.4, scene.transfer, scene.frame).picture, expected), 200);
 }
@@ -112,14 +112,14 @@ TEST(SlabRenderer, DoesNotDependOnTheValueThatSumsAreRelativeTo) {
 TEST(SlabRenderer, DrawsOneValueAsOneColourToTheBit) {
   // An extinction and colour that depend on the value: a ramp.
   const TransferFunction ramp({{0, {0, 0, 0}, 0}, {1, {1, 0.5, 0.25}, 0.99}}, 0.02);
-  const geometry::CameraFrame frame = look({0.2, 0.1, 0.3}, {0.1, 0, -0.2}, 60);
+  const geometry::CameraFrame frame = slab_view({0.2, 0.1, 0.3}, {0.1, 0, -0.2}, 60);
   const SrgbPicture picture = encode(draw_slabs(constant_grid(), 0, ramp, frame).picture);
   for (const glm::u8vec3& p : picture.pixels) EXPECT_EQ(p, picture.pixels.front());
 }
 
 TEST(SlabRenderer, CutsAtClipBoxesExactly) {
   const VolumeGrid grid = constant_grid();
-  const geometry::CameraFrame frame = look({1.3, 1.1, 3}, {0, 0, 0}, 50);
+  const geometry::CameraFrame frame = slab_view({1.3, 1.1, 3}, {0, 0, 0}, 50);
   const ClipBox clip{{-0.33, -2, -0.1}, {0.41, 0.27, 2}};
   const LightPicture picture = draw_slabs(grid, 0, fog(), frame, unfiltered(), {}, clip).picture;
   const auto length = [&](const glm::dvec3& d) {
@@ -131,14 +131,14 @@ TEST(SlabRenderer, CutsAtClipBoxesExactly) {
 
 TEST(SlabRenderer, LetsSurfacesHideAndBeHiddenAtEveryDepth) {
   const VolumeGrid grid = constant_grid();
-  const geometry::CameraFrame frame = look({0, 0, 3}, {0, 0, 0}, 20);
+  const geometry::CameraFrame frame = slab_view({0, 0, 3}, {0, 0, 0}, 20);
   const glm::dvec3 green{0, 1, 0};
   const glm::dvec3 fog_color = fog().at(0.6).color;
   for (const double distance : {0.5, 2.3, 2.777, 3.5, 6.0}) {
     for (const double coverage : {1.0, 0.4}) {
       const SurfaceLayers layers = [&](const auto&) { return std::vector<SurfaceLayer>{{distance, green, coverage}}; };
       const LightPicture picture = draw_slabs(grid, 0, fog(), frame, unfiltered(), layers).picture;
-      for (int x = 0; x < kSide; ++x) {
+      for (int x = 0; x < kSlabSide; ++x) {
         const RayInterval part = visible_interval(grid, {}, frame.eye, ray_direction(frame, {x + 0.5, 0.5}));
         const double before = std::max(0.0, std::min(distance, part.end) - part.begin);
         const double behind = std::max(0.0, part.end - std::max(distance, part.begin));
@@ -154,7 +154,7 @@ TEST(SlabRenderer, LetsSurfacesHideAndBeHiddenAtEveryDepth) {
 
 TEST(SlabRenderer, DrawsGridsOfOneSampleAcross) {
   const VolumeGrid rod = make_grid({1, 1, 9}, {0, 0, -1}, glm::dmat3(0.25), [](const auto&) { return 0.6; });
-  const geometry::CameraFrame frame = look({1.3, 1.1, 3}, {0, 0, 0}, 30);
+  const geometry::CameraFrame frame = slab_view({1.3, 1.1, 3}, {0, 0, 0}, 30);
   const LightPicture picture = draw_slabs(rod, 0, fog(), frame, unfiltered()).picture;
   EXPECT_LT(largest_error(picture, frame, [&](const auto& d) { return in_box(rod, frame.eye, d); }), 1e-9);
 }
@@ -166,7 +166,7 @@ VolumeGrid torus_by(const glm::dmat3& axes, const glm::ivec3& size) {
 }
 
 TEST(SlabRenderer, DrawsTheSameVolumeFromAxesThatRunBackwards) {
-  const VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(16), kSide);
+  const VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(16), kSlabSide);
   const double h = 2.0 / 15;
   const VolumeGrid backwards = torus_by({{0, -h, 0}, {0, 0, -h}, {h, 0, 0}}, glm::ivec3(16));
   const LightPicture expected = draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture;
@@ -174,7 +174,7 @@ TEST(SlabRenderer, DrawsTheSameVolumeFromAxesThatRunBackwards) {
 }
 
 TEST(SlabRenderer, DrawsShearedGridsAsWellAsStraightOnes) {
-  VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(2), kSide);
+  VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(2), kSlabSide);
   const double h = 2.0 / 31;
   const VolumeGrid sheared = torus_by({{h, 0, 0}, {0.4 * h, 0.9 * h, 0}, {-0.3 * h, 0.2 * h, h}}, {46, 38, 32});
   EXPECT_GT(covered_psnr(draw_slabs(sheared, 0, scene.transfer, scene.frame).picture, ideal_picture(scene)), 47);
@@ -182,7 +182,7 @@ TEST(SlabRenderer, DrawsShearedGridsAsWellAsStraightOnes) {
 
 TEST(SlabRenderer, LeavesOutOnlyWhatCannotShow) {
   for (const char* transfer : {"smooth", "shell"}) {
-    VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(24), kSide);
+    VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(24), kSlabSide);
     scene.transfer = transfer_by_name(transfer, 2.0 / 23);
     SlabParameters parameters;
     const SlabDrawing some = draw_slabs(scene.grid, 0, scene.transfer, scene.frame, parameters);
@@ -194,7 +194,7 @@ TEST(SlabRenderer, LeavesOutOnlyWhatCannotShow) {
 }
 
 TEST(SlabRenderer, IsAsGoodInIntegersOf16Bits) {
-  const VolumeScene scene = make_volume_scene("blobs", "mid", glm::ivec3(24), kSide);
+  const VolumeScene scene = make_volume_scene("blobs", "mid", glm::ivec3(24), kSlabSide);
   const LightPicture expected = draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture;
   SlabParameters integers;
   integers.unit = 1.0 / 65536;
@@ -202,7 +202,7 @@ TEST(SlabRenderer, IsAsGoodInIntegersOf16Bits) {
 }
 
 TEST(SlabRenderer, DrawsTheSameAtEveryScaleAndPlaceInTheWorld) {
-  const VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(16), kSide);
+  const VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(16), kSlabSide);
   const LightPicture expected = draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture;
   const auto moved = [&](double scale, const glm::dvec3& offset) {
     VolumeGrid grid = scene.grid;
@@ -219,7 +219,7 @@ TEST(SlabRenderer, DrawsTheSameAtEveryScaleAndPlaceInTheWorld) {
 }
 
 TEST(SlabRenderer, EndsRaysWhereNothingMoreIsSeen) {
-  const VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(24), kSide);
+  const VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(24), kSlabSide);
   SlabParameters whole;
   whole.clear = 0;
   EXPECT_GT(covered_psnr(draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture,
@@ -231,7 +231,7 @@ TEST(SlabRenderer, MayTakeTheDistanceOfCentresExceptNearTheEye) {
   SlabParameters centres;
   centres.by_centre = true;
   const auto against_ray = [&](const char* view) {
-    const VolumeScene scene = make_volume_scene("torus", view, glm::ivec3(24), kSide);
+    const VolumeScene scene = make_volume_scene("torus", view, glm::ivec3(24), kSlabSide);
     return covered_psnr(draw_slabs(scene.grid, 0, scene.transfer, scene.frame, centres).picture,
                         draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture);
   };
@@ -241,14 +241,14 @@ TEST(SlabRenderer, MayTakeTheDistanceOfCentresExceptNearTheEye) {
 }
 
 TEST(SlabRenderer, ShowsNothingUnderAnEmptyFunction) {
-  const VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(8), kSide);
+  const VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(8), kSlabSide);
   const SlabDrawing drawing = draw_slabs(scene.grid, 0, TransferFunction(), scene.frame);
   EXPECT_EQ(drawing.kernels, 0);
   for (const glm::dvec4& p : drawing.picture.pixels) EXPECT_EQ(p, glm::dvec4(0));
 }
 
 TEST(SlabRenderer, IsCloserToTheIdealThanSheetsAndRayCasting) {
-  const VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(32), 2 * kSide);
+  const VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(32), 2 * kSlabSide);
   const LightPicture ideal = ideal_picture(scene);
   EXPECT_GT(covered_psnr(draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture, ideal), 48);
   EXPECT_LT(covered_psnr(draw_sheets(scene.grid, scene.transfer, scene.frame), ideal), 30);

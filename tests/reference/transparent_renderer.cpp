@@ -4,12 +4,12 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include <tbb/parallel_for.h>
 
 #include "base/contract.h"
 #include "reference/headlight.h"
+#include "reference/infinity.h"
 #include "reference/reference_renderer.h"
 #include "surfel/even_sampling.h"
 
@@ -19,7 +19,6 @@ namespace {
 constexpr int kTile = 8;                        ///< pixels
 constexpr double kMaxOpacity = 1 - 1.0 / 4096;  ///< of a fragment of a medium: its optical depth is finite
 constexpr double kOpaque = 1.0 / 128;           ///< transmittance below which nothing is visible
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct SeenSurfel {
   Splat splat;

@@ -12,16 +12,16 @@
 namespace surfcast::reference {
 namespace {
 
-struct Goal {
+struct LayersGoal {
   const char* scene;
   double inside;  ///< dB, at least, where all rays of a pixel meet the same sheets
   double whole;   ///< dB, at least, of the whole picture
 };
-std::ostream& operator<<(std::ostream& out, const Goal& goal) {
+std::ostream& operator<<(std::ostream& out, const LayersGoal& goal) {
   return out << goal.inside << " dB inside, " << goal.whole << " dB";
 }
 
-class Transparency : public testing::TestWithParam<Goal> {};
+class Transparency : public testing::TestWithParam<LayersGoal> {};
 
 TEST_P(Transparency, ComesNearTheAnalyticLayers) {
   const TransparentScene scene = make_transparent_scene(GetParam().scene);
@@ -32,12 +32,14 @@ TEST_P(Transparency, ComesNearTheAnalyticLayers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Transparency,
-                         testing::Values(Goal{"planes", 49, 45}, Goal{"planes_noise_quarter", 46, 44},
-                                         Goal{"planes_noise_half", 39, 39}, Goal{"spheres", 49, 38.5},
-                                         Goal{"spheres_noise_half", 39, 34.5}, Goal{"planes_normal_noise", 39, 39},
-                                         Goal{"spheres_normal_noise", 39, 38.5}, Goal{"sheets_two_radii", 42, 42},
-                                         Goal{"sheets_one_radius", 36, 36}, Goal{"crossing_planes", 49, 40},
-                                         Goal{"alpha_texture", 32, 32}, Goal{"glass_shell", 40, 40}),
+                         testing::Values(LayersGoal{"planes", 49, 45}, LayersGoal{"planes_noise_quarter", 46, 44},
+                                         LayersGoal{"planes_noise_half", 39, 39}, LayersGoal{"spheres", 49, 38.5},
+                                         LayersGoal{"spheres_noise_half", 39, 34.5},
+                                         LayersGoal{"planes_normal_noise", 39, 39},
+                                         LayersGoal{"spheres_normal_noise", 39, 38.5},
+                                         LayersGoal{"sheets_two_radii", 42, 42},
+                                         LayersGoal{"sheets_one_radius", 36, 36}, LayersGoal{"crossing_planes", 49, 40},
+                                         LayersGoal{"alpha_texture", 32, 32}, LayersGoal{"glass_shell", 40, 40}),
                          [](const auto& goal) { return std::string(goal.param.scene); });
 
 }  // namespace

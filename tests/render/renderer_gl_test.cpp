@@ -14,7 +14,7 @@ namespace {
 
 using RendererGLTest = testing::RendererFixture;
 
-picture::PictureRequest front_view(int width, int height, double distance = 5) {
+picture::PictureRequest view_along_z(int width, int height, double distance = 5) {
   picture::PictureRequest request;
   request.camera = geometry::Camera{{0, 0, distance}, {0, 0, 0}, {0, 1, 0}, 30};
   request.width = width;
@@ -42,7 +42,7 @@ TEST_F(RendererGLTest, ASphereOfOneColorIsThatColorInEveryCoveredPixel) {
   // The sphere subtends asin(1/5): a disc of eta tan(asin(1/5)) pixels.
   const double radius = 512 / (2 * std::tan(std::numbers::pi / 12)) * std::tan(std::asin(0.2));
   for (const picture::Normalization normalization : {picture::Normalization::kPixel, picture::Normalization::kSurfel}) {
-    picture::PictureRequest request = front_view(512, 512);
+    picture::PictureRequest request = view_along_z(512, 512);
     request.normalization = normalization;
     const int covered = count_covered(draw(model, request).image, color, 1);
     EXPECT_NEAR(covered, std::numbers::pi * radius * radius, 2 * std::numbers::pi * radius * 2) << "2 pixels of edge";
@@ -51,7 +51,7 @@ TEST_F(RendererGLTest, ASphereOfOneColorIsThatColorInEveryCoveredPixel) {
 
 TEST_F(RendererGLTest, WhereNothingIsTheBackgroundShowsExactly) {
   const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(1000, 1, {0, 0, 0}, {255, 255, 255}));
-  picture::PictureRequest request = front_view(64, 64);
+  picture::PictureRequest request = view_along_z(64, 64);
   request.background = {12, 34, 56};
   const picture::Image image = draw(model, request).image;
   EXPECT_EQ(pixel(image, 0, 0), glm::u8vec4(12, 34, 56, 0));
@@ -60,7 +60,7 @@ TEST_F(RendererGLTest, WhereNothingIsTheBackgroundShowsExactly) {
 
 TEST_F(RendererGLTest, TheFirstPictureMayShowNothing) {
   const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(1000, 1, {0, 0, 0}, {255, 255, 255}));
-  picture::PictureRequest request = front_view(64, 64);
+  picture::PictureRequest request = view_along_z(64, 64);
   request.camera->focal_point = {0, 0, 10};
   request.background = {12, 34, 56};
   EXPECT_EQ(pixel(draw(model, request).image, 31, 31), glm::u8vec4(12, 34, 56, 0));
@@ -70,11 +70,11 @@ TEST_F(RendererGLTest, TheSameRequestGivesTheSameBytes) {
   surfel::SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {200, 90, 20});
   for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
   const testing::ModelPointer& model = model_of(cloud);
-  const picture::Frame first = draw(model, front_view(300, 200));
-  draw(model, front_view(100, 100, 2));
-  EXPECT_EQ(draw(model, front_view(300, 200)).image.pixels, first.image.pixels);
+  const picture::Frame first = draw(model, view_along_z(300, 200));
+  draw(model, view_along_z(100, 100, 2));
+  EXPECT_EQ(draw(model, view_along_z(300, 200)).image.pixels, first.image.pixels);
   renderer_->release_model(*model);
-  EXPECT_EQ(draw(model, front_view(300, 200)).image.pixels, first.image.pixels) << "after loading it again";
+  EXPECT_EQ(draw(model, view_along_z(300, 200)).image.pixels, first.image.pixels) << "after loading it again";
 }
 
 /// A sphere in many colours, with attributes.
@@ -86,7 +86,7 @@ surfel::SurfelCloud motley_sphere() {
 
 TEST_F(RendererGLTest, APictureThatOthersInterruptHasTheBytesOfOneThatNobodyDoes) {
   const testing::ModelPointer& model = model_of(motley_sphere());
-  std::vector<picture::PictureRequest> requests(4, front_view(400, 300, 3));
+  std::vector<picture::PictureRequest> requests(4, view_along_z(400, 300, 3));
   requests[1].coloring.source = picture::SurfelColor::kElevation;
   requests[1].shading = picture::Shading::kLit;
   requests[1].camera->position = {0, 0, 1.02};  // large splats
@@ -114,7 +114,7 @@ TEST_F(RendererGLTest, APictureThatOthersInterruptHasTheBytesOfOneThatNobodyDoes
 
 TEST_F(RendererGLTest, APictureThatInterruptsAnotherMayBeInterruptedToo) {
   const testing::ModelPointer& model = model_of(motley_sphere());
-  std::vector<picture::PictureRequest> requests(3, front_view(200, 150, 3));
+  std::vector<picture::PictureRequest> requests(3, view_along_z(200, 150, 3));
   requests[1].camera->position = {0, 0, 1.02};  // large splats
   requests[2].eye_dome.strength = 1;
   std::vector<picture::Frame> expected;
@@ -140,7 +140,7 @@ TEST_F(RendererGLTest, APictureThatInterruptsAnotherMayBeInterruptedToo) {
 
 TEST_F(RendererGLTest, APictureThatMissesTooMuchIsNotDrawnUntilAllIsThere) {
   const testing::ModelPointer& model = model_of(motley_sphere());
-  picture::PictureRequest request = front_view(64, 64);
+  picture::PictureRequest request = view_along_z(64, 64);
   request.loading = picture::Loading::kNow;
   request.displayed_cut = 1;
   request.max_missing_blocks = 0;
@@ -152,28 +152,28 @@ TEST_F(RendererGLTest, APictureThatMissesTooMuchIsNotDrawnUntilAllIsThere) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     frame = draw(model, request);
   }
-  EXPECT_EQ(frame.image.pixels, draw(model, front_view(64, 64)).image.pixels);
+  EXPECT_EQ(frame.image.pixels, draw(model, view_along_z(64, 64)).image.pixels);
   request.displayed_cut = frame.cut;
   EXPECT_TRUE(draw(model, request).image.pixels.empty()) << "nothing else would be seen";
 }
 
 TEST_F(RendererGLTest, AModelThatIsForgottenWhileItIsDrawnIsDrawnToItsEnd) {
   const testing::ModelPointer& model = model_of(motley_sphere());
-  const picture::Frame expected = draw(model, front_view(200, 150));
+  const picture::Frame expected = draw(model, view_along_z(200, 150));
   const std::atomic<bool> never{false};
   const Preemption preemption(never, [&] {
     renderer_->release_model(*model);
     return true;
   });
-  const Result<picture::Frame> frame = renderer_->draw(model, front_view(200, 150), preemption);
+  const Result<picture::Frame> frame = renderer_->draw(model, view_along_z(200, 150), preemption);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->image.pixels, expected.image.pixels);
-  EXPECT_EQ(draw(model, front_view(200, 150)).stats.blocks_waited_for, expected.stats.blocks_waited_for);
+  EXPECT_EQ(draw(model, view_along_z(200, 150)).stats.blocks_waited_for, expected.stats.blocks_waited_for);
 }
 
 TEST_F(RendererGLTest, OneSurfelMayFillTheScreen) {
   const testing::ModelPointer& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {10, 200, 30}));
-  picture::PictureRequest request = front_view(96, 64, 0.05);
+  picture::PictureRequest request = view_along_z(96, 64, 0.05);
   EXPECT_EQ(count_covered(draw(model, request).image, {10, 200, 30}, 1), 96 * 64);
 }
 
@@ -184,7 +184,7 @@ TEST_F(RendererGLTest, SurfelsMayFillTheLargestRegion) {
     testing::append(cloud, testing::single_surfel({0, 0, -1e-3 * i}, {0, 0, 1}, 1, {10, 200, 30}));
   }
   const testing::ModelPointer& model = model_of(cloud);
-  EXPECT_EQ(count_covered(draw(model, front_view(2048, 2048, 0.05)).image, {10, 200, 30}, 1), 2048 * 2048);
+  EXPECT_EQ(count_covered(draw(model, view_along_z(2048, 2048, 0.05)).image, {10, 200, 30}, 1), 2048 * 2048);
 }
 
 TEST_F(RendererGLTest, FromWithinAModelEveryPixelIsCovered) {
@@ -203,7 +203,7 @@ TEST_F(RendererGLTest, FromWithinAModelEveryPixelIsCovered) {
 
 TEST_F(RendererGLTest, BackFacesOfOrientedModelsAreNotDrawn) {
   surfel::SurfelCloud cloud = testing::square(64, 1, {0, 0, 0}, {0, 0, -1}, {255, 255, 255});
-  picture::PictureRequest request = front_view(64, 64);
+  picture::PictureRequest request = view_along_z(64, 64);
   EXPECT_EQ(draw(model_of(cloud), request).stats.surfels_drawn, 0u);
   cloud.oriented = false;
   EXPECT_GT(count_covered(draw(model_of(cloud), request).image, {255, 255, 255}, 1), 300);
@@ -212,7 +212,7 @@ TEST_F(RendererGLTest, BackFacesOfOrientedModelsAreNotDrawn) {
 TEST_F(RendererGLTest, AMillionSurfelsInOnePixelKeepTheirColor) {
   surfel::SurfelCloud cloud = testing::fibonacci_sphere(1000000, 1e-3, {0, 0, 0}, {200, 90, 20});
   const testing::ModelPointer& model = model_of(cloud);
-  picture::PictureRequest request = front_view(33, 33, 1);
+  picture::PictureRequest request = view_along_z(33, 33, 1);
   request.format = picture::PixelFormat::kLinearFloat;
   request.background = {0, 0, 0};
   // The sphere's diameter is about a tenth of a pixel, so that the coverage of the middle pixel is small and known: the
@@ -234,8 +234,8 @@ TEST_F(RendererGLTest, CoincidentSurfelsAreOne) {
   surfel::SurfelCloud one = testing::single_surfel({0, 0, 0}, {0, 0, 1}, 0.5F, {10, 200, 30});
   surfel::SurfelCloud many = one;
   for (int i = 0; i < 9; ++i) testing::append(many, one);
-  const picture::Image a = draw(model_of(one), front_view(64, 64)).image;
-  const picture::Image b = draw(model_of(many), front_view(64, 64)).image;
+  const picture::Image a = draw(model_of(one), view_along_z(64, 64)).image;
+  const picture::Image b = draw(model_of(many), view_along_z(64, 64)).image;
   EXPECT_EQ(pixel(a, 32, 32), pixel(b, 32, 32));
 }
 
@@ -246,7 +246,7 @@ TEST_F(RendererGLTest, EdgeOnSurfelsStayFiniteAndSmall) {
     surfel::SurfelCloud cloud =
         testing::single_surfel({0, 0, 0}, glm::vec3(0, std::sin(angle), std::cos(angle)), 0.1F, {255, 255, 255});
     cloud.oriented = false;
-    picture::PictureRequest request = front_view(128, 128, 1);
+    picture::PictureRequest request = view_along_z(128, 128, 1);
     request.format = picture::PixelFormat::kLinearFloat;
     const picture::Image image = draw(model_of(cloud), request).image;
     for (int y = 0; y < 128; ++y) {
@@ -263,7 +263,7 @@ TEST_F(RendererGLTest, EdgeOnSurfelsStayFiniteAndSmall) {
 
 TEST_F(RendererGLTest, MapCoordinatesAndMillimetresDrawAsAtTheOrigin) {
   const glm::dvec3 far_away(448262.31, 5411932.67, 312.45);
-  picture::PictureRequest request = front_view(128, 128, 0.005);
+  picture::PictureRequest request = view_along_z(128, 128, 0.005);
   const picture::Image at_origin =
       draw(model_of(testing::square(100, 0.001, {0, 0, 0}, {0, 0.3, 1}, {200, 90, 20})), request).image;
   request.camera->position += far_away;
@@ -284,7 +284,7 @@ TEST_F(RendererGLTest, MapCoordinatesAndMillimetresDrawAsAtTheOrigin) {
 TEST_F(RendererGLTest, ScaleDoesNotMatter) {
   for (const double scale : {1e-12, 1e-4, 1.0, 1e5, 1e12}) {
     const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(20000, scale, {0, 0, 0}, {200, 90, 20}));
-    EXPECT_NEAR(count_covered(draw(model, front_view(128, 128, 5 * scale)).image, {200, 90, 20}, 1), 7250, 250)
+    EXPECT_NEAR(count_covered(draw(model, view_along_z(128, 128, 5 * scale)).image, {200, 90, 20}, 1), 7250, 250)
         << scale;
   }
 }
@@ -293,7 +293,7 @@ TEST_F(RendererGLTest, OneSurfaceBeforeAnotherHasNoSeamInTheColorOfTheBackground
   surfel::SurfelCloud cloud = testing::square(200, 4, {0, 0, -1}, {0, 0, 1}, {200, 200, 200});
   testing::append(cloud, testing::square(60, 0.6, {0, 0, 0}, {0.2, 0.1, 1}, {200, 200, 200}));
   for (const bool blends_behind : {false, true}) {
-    picture::PictureRequest request = front_view(256, 256);
+    picture::PictureRequest request = view_along_z(256, 256);
     request.blends_behind = blends_behind;
     const picture::Image image = draw(model_of(cloud), request).image;
     for (int y = 16; y < 240; ++y) {
@@ -305,7 +305,7 @@ TEST_F(RendererGLTest, OneSurfaceBeforeAnotherHasNoSeamInTheColorOfTheBackground
 TEST_F(RendererGLTest, BehindASurfaceThatHidesAllBlendingChangesNothing) {
   surfel::SurfelCloud cloud = testing::square(200, 4, {0, 0, 0}, {0, 0, 1}, {200, 90, 20});
   testing::append(cloud, testing::square(200, 4, {0, 0, -1}, {0, 0, 1}, {20, 200, 90}));
-  picture::PictureRequest request = front_view(128, 128);
+  picture::PictureRequest request = view_along_z(128, 128);
   const picture::Image exact = draw(model_of(cloud), request).image;
   request.blends_behind = true;
   EXPECT_EQ(draw(model_of(cloud), request).image.pixels, exact.pixels);
@@ -326,7 +326,7 @@ surfel::SurfelCloud surfaces_behind_scatter() {
 
 TEST_F(RendererGLTest, BlendedBehindTheFrontSurfaceAllSurfacesCountAsOne) {
   const testing::ModelPointer& model = model_of(surfaces_behind_scatter());
-  picture::PictureRequest request = front_view(64, 64, 8);
+  picture::PictureRequest request = view_along_z(64, 64, 8);
   request.normalization = picture::Normalization::kSurfel;
   const glm::u8vec4 exact = pixel(draw(model, request).image, 32, 32);
   request.blends_behind = true;
@@ -342,7 +342,7 @@ TEST_F(RendererGLTest, BlendedBehindTheFrontSurfaceAllSurfacesCountAsOne) {
 TEST_F(RendererGLTest, WithoutColorASurfaceIsLitFromTheEye) {
   surfel::SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {0, 0, 0});
   cloud.colors.reset();
-  picture::PictureRequest request = front_view(256, 256);
+  picture::PictureRequest request = view_along_z(256, 256);
   request.format = picture::PixelFormat::kLinearFloat;
   const testing::ModelPointer& model = model_of(cloud);
   const picture::Image image = draw(model, request).image;
@@ -360,7 +360,7 @@ TEST_F(RendererGLTest, WithoutColorASurfaceIsLitFromTheEye) {
 
 TEST_F(RendererGLTest, ColorsAreLitWhenAskedFor) {
   const testing::ModelPointer& model = model_of(testing::square(200, 2, {0, 0, 0}, {0, 1, 1}, {255, 255, 255}));
-  picture::PictureRequest request = front_view(64, 64);
+  picture::PictureRequest request = view_along_z(64, 64);
   request.format = picture::PixelFormat::kLinearFloat;
   EXPECT_NEAR(light(draw(model, request).image, 32, 32).g, 1, 0.005);
   request.shading = picture::Shading::kLit;
@@ -369,8 +369,8 @@ TEST_F(RendererGLTest, ColorsAreLitWhenAskedFor) {
 
 TEST_F(RendererGLTest, PicturesOfOnePixelAndOfSeveralRegionsAreDrawn) {
   const testing::ModelPointer& model = model_of(testing::square(50, 4, {0, 0, 0}, {0, 0, 1}, {200, 90, 20}));
-  EXPECT_EQ(count_covered(draw(model, front_view(1, 1, 1)).image, {200, 90, 20}, 1), 1);
-  picture::PictureRequest wide = front_view(4100, 20, 20);
+  EXPECT_EQ(count_covered(draw(model, view_along_z(1, 1, 1)).image, {200, 90, 20}, 1), 1);
+  picture::PictureRequest wide = view_along_z(4100, 20, 20);
   wide.camera->view_angle = 0.9;
   const picture::Image image = draw(model, wide).image;
   // The plane spans 4 / (20 * 2 tan(0.45 degrees)) of the height: all rows, and 255 columns around the middle. Stated
@@ -387,7 +387,7 @@ TEST_F(RendererGLTest, AModelThatTookThePlaceOfAnotherIsDrawnAsItself) {
     Result<model::ModelFile> opened = model::ModelFile::open(folder_ / "one.surf");
     ASSERT_TRUE(opened);
     const auto model = std::make_shared<const model::ModelFile>(std::move(*opened));
-    EXPECT_EQ(pixel(draw(model, front_view(64, 64)).image, 32, 32), glm::u8vec4(color, 255));
+    EXPECT_EQ(pixel(draw(model, view_along_z(64, 64)).image, 32, 32), glm::u8vec4(color, 255));
     renderer_->release_model(*model);
   }
 }
@@ -395,15 +395,15 @@ TEST_F(RendererGLTest, AModelThatTookThePlaceOfAnotherIsDrawnAsItself) {
 TEST_F(RendererGLTest, WrongRequestsAreRefused) {
   const testing::ModelPointer& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {1, 2, 3}));
   const std::atomic<bool> no{false};
-  EXPECT_EQ(renderer_->draw(model, front_view(0, 10), no).error().kind, ErrorKind::kLimit);
-  EXPECT_EQ(renderer_->draw(model, front_view(10, 1 << 20), no).error().kind, ErrorKind::kLimit);
-  EXPECT_EQ(renderer_->draw(model, front_view(10, 10, 0), no).error().kind, ErrorKind::kInvalidInput);
+  EXPECT_EQ(renderer_->draw(model, view_along_z(0, 10), no).error().kind, ErrorKind::kLimit);
+  EXPECT_EQ(renderer_->draw(model, view_along_z(10, 1 << 20), no).error().kind, ErrorKind::kLimit);
+  EXPECT_EQ(renderer_->draw(model, view_along_z(10, 10, 0), no).error().kind, ErrorKind::kInvalidInput);
 }
 
 TEST_F(RendererGLTest, ACancelledPictureStops) {
   const testing::ModelPointer& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {1, 2, 3}));
   const std::atomic<bool> yes{true};
-  EXPECT_EQ(renderer_->draw(model, front_view(10, 10), yes).error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(renderer_->draw(model, view_along_z(10, 10), yes).error().kind, ErrorKind::kCancelled);
 }
 
 TEST_F(RendererGLTest, AViewOfAModelIsFoundWithoutACamera) {

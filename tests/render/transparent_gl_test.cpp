@@ -48,16 +48,16 @@ class TransparentGLTest : public testing::RendererFixture {
   }
 };
 
-struct Goal {
+struct LayersGoal {
   const char* scene;
   double psnr;       ///< dB, at least, over the pixels of `part`
   const char* part;  ///< "inside", "edges" or "whole"
 };
-std::ostream& operator<<(std::ostream& out, const Goal& goal) {
+std::ostream& operator<<(std::ostream& out, const LayersGoal& goal) {
   return out << goal.scene << ' ' << goal.part << ' ' << goal.psnr << " dB";
 }
 
-class LayersGLTest : public TransparentGLTest, public ::testing::WithParamInterface<Goal> {
+class LayersGLTest : public TransparentGLTest, public ::testing::WithParamInterface<LayersGoal> {
  protected:
   /// The opacities of the surfels in the order of the file.
   std::vector<double> decoded_opacities(const TransparentScene& scene) const {
@@ -96,12 +96,12 @@ TEST_P(LayersGLTest, ComeNearTheAnalyticLayers) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, LayersGLTest,
-    ::testing::Values(Goal{"planes", 49, "inside"}, Goal{"planes_noise_quarter", 46, "inside"},
-                      Goal{"planes_noise_half", 39, "inside"}, Goal{"spheres", 38.5, "whole"},
-                      Goal{"spheres_noise_half", 34.5, "whole"}, Goal{"planes_normal_noise", 39, "inside"},
-                      Goal{"spheres_normal_noise", 34.5, "whole"}, Goal{"sheets_two_radii", 42, "inside"},
-                      Goal{"sheets_one_radius", 36, "inside"}, Goal{"crossing_planes", 29.5, "edges"},
-                      Goal{"alpha_texture", 32, "whole"}, Goal{"glass_shell", 40, "whole"}),
+    ::testing::Values(LayersGoal{"planes", 49, "inside"}, LayersGoal{"planes_noise_quarter", 46, "inside"},
+                      LayersGoal{"planes_noise_half", 39, "inside"}, LayersGoal{"spheres", 38.5, "whole"},
+                      LayersGoal{"spheres_noise_half", 34.5, "whole"}, LayersGoal{"planes_normal_noise", 39, "inside"},
+                      LayersGoal{"spheres_normal_noise", 34.5, "whole"}, LayersGoal{"sheets_two_radii", 42, "inside"},
+                      LayersGoal{"sheets_one_radius", 36, "inside"}, LayersGoal{"crossing_planes", 29.5, "edges"},
+                      LayersGoal{"alpha_texture", 32, "whole"}, LayersGoal{"glass_shell", 40, "whole"}),
     [](const auto& goal) { return std::string(goal.param.scene); });
 
 }  // namespace

@@ -26,7 +26,7 @@ Result<testing::WholeScan> read(const std::string& text) {
   return testing::read_whole(as_bytes(text), "heights.asc");
 }
 
-std::string error_of(const std::string& text) {
+std::string grid_error(const std::string& text) {
   const Result<testing::WholeScan> points = read(text);
   return points ? "no error" : points.error().message;
 }
@@ -69,19 +69,19 @@ TEST(AsciiGridReaderTest, PiecesBeginWhereTheirCellsAre) {
 }
 
 TEST(AsciiGridReaderTest, DefectsAreNamed) {
-  EXPECT_THAT(error_of("ncols 3\nxllcorner 1\n" + kCells), HasSubstr("ASCII grid: nrows is missing"));
-  EXPECT_THAT(error_of("ncols 3\nnrows 2\nxllcorner 1\ncellsize 1\n1"), HasSubstr("yllcorner is missing"));
-  EXPECT_THAT(error_of("ncols 3\nnrows 2\nxllcorner 1\nyllcorner 1\n1"), HasSubstr("cellsize is missing"));
-  EXPECT_THAT(error_of("ncols 3\nnrows 0\nxllcorner 1\nyllcorner 1\ncellsize 1\n1"),
+  EXPECT_THAT(grid_error("ncols 3\nxllcorner 1\n" + kCells), HasSubstr("ASCII grid: nrows is missing"));
+  EXPECT_THAT(grid_error("ncols 3\nnrows 2\nxllcorner 1\ncellsize 1\n1"), HasSubstr("yllcorner is missing"));
+  EXPECT_THAT(grid_error("ncols 3\nnrows 2\nxllcorner 1\nyllcorner 1\n1"), HasSubstr("cellsize is missing"));
+  EXPECT_THAT(grid_error("ncols 3\nnrows 0\nxllcorner 1\nyllcorner 1\ncellsize 1\n1"),
               HasSubstr("nrows is not a number of cells"));
-  EXPECT_THAT(error_of("ncols 3\nnrows x\n"), HasSubstr("nrows is not a number: x"));
-  EXPECT_THAT(error_of("ncols 3\nnrows 2\nxllcorner 1\nyllcorner 1\ncellsize -1\n1"), HasSubstr("not positive"));
-  EXPECT_THAT(error_of(kHeader + "1 2 3 4 5"), HasSubstr("truncated: 5 of 6 cells"));
-  EXPECT_THAT(error_of(kHeader + kCells + "7"), HasSubstr("more than 6 cells"));
-  EXPECT_THAT(error_of(kHeader + "1 2,5 3 4 5 6"), HasSubstr("a cell is not a number: 2,5"));
-  EXPECT_THAT(error_of("ncols 1\nnrows 1\nxllcorner 1\nyllcorner 1\ncellsize 1\nnodata_value 0\n0\n"),
+  EXPECT_THAT(grid_error("ncols 3\nnrows x\n"), HasSubstr("nrows is not a number: x"));
+  EXPECT_THAT(grid_error("ncols 3\nnrows 2\nxllcorner 1\nyllcorner 1\ncellsize -1\n1"), HasSubstr("not positive"));
+  EXPECT_THAT(grid_error(kHeader + "1 2 3 4 5"), HasSubstr("truncated: 5 of 6 cells"));
+  EXPECT_THAT(grid_error(kHeader + kCells + "7"), HasSubstr("more than 6 cells"));
+  EXPECT_THAT(grid_error(kHeader + "1 2,5 3 4 5 6"), HasSubstr("a cell is not a number: 2,5"));
+  EXPECT_THAT(grid_error("ncols 1\nnrows 1\nxllcorner 1\nyllcorner 1\ncellsize 1\nnodata_value 0\n0\n"),
               HasSubstr("has no points"));
-  EXPECT_THAT(error_of("ncols 4e9\nnrows 4e9\nxllcorner 1\nyllcorner 1\ncellsize 1\n1 2"),
+  EXPECT_THAT(grid_error("ncols 4e9\nnrows 4e9\nxllcorner 1\nyllcorner 1\ncellsize 1\n1 2"),
               HasSubstr("truncated: 2 of 16000000000000000000 cells"));
 }
 

@@ -65,25 +65,25 @@ TEST(E57ReaderTest, FloatsAreDoubleWithoutAPrecision) {
   EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(1, 3, 5), glm::dvec3(2, 4, 6)));
 }
 
-std::string error_of(const std::string& file) {
+std::string e57_error(const std::string& file) {
   const Result<testing::WholeScan> points = testing::read_whole(testing::as_bytes(file), "one.e57");
   return points ? "" : points.error().message;
 }
 
 TEST(E57ReaderTest, WhatCannotBeReadIsNamed) {
-  EXPECT_THAT(error_of(one_scan(kCartesian, 3)), HasSubstr("states 3 points, its values are fewer"));
-  EXPECT_THAT(error_of(one_scan("<cartesianX type='Float'/>")), HasSubstr("no coordinates"));
-  EXPECT_THAT(error_of(one_scan("<cartesianX type='Word'/>")), HasSubstr("type that is not supported"));
-  EXPECT_THAT(error_of(one_scan("<cartesianX type='Integer' minimum='4' maximum='3'/>")),
+  EXPECT_THAT(e57_error(one_scan(kCartesian, 3)), HasSubstr("states 3 points, its values are fewer"));
+  EXPECT_THAT(e57_error(one_scan("<cartesianX type='Float'/>")), HasSubstr("no coordinates"));
+  EXPECT_THAT(e57_error(one_scan("<cartesianX type='Word'/>")), HasSubstr("type that is not supported"));
+  EXPECT_THAT(e57_error(one_scan("<cartesianX type='Integer' minimum='4' maximum='3'/>")),
               HasSubstr("above its maximum"));
-  EXPECT_THAT(error_of(one_scan(std::string(kCartesian) + "<intensity type='Float'/>")),
+  EXPECT_THAT(e57_error(one_scan(std::string(kCartesian) + "<intensity type='Float'/>")),
               HasSubstr("one stream for each"));
-  EXPECT_THAT(error_of(one_scan("<cartesianX type='Float'>")), HasSubstr("XML is damaged"));
+  EXPECT_THAT(e57_error(one_scan("<cartesianX type='Float'>")), HasSubstr("XML is damaged"));
   std::string nested;
   for (int i = 0; i < 100; ++i) nested += "<a>";
-  EXPECT_THAT(error_of(one_scan(nested)), HasSubstr("nested too deeply"));
+  EXPECT_THAT(e57_error(one_scan(nested)), HasSubstr("nested too deeply"));
   const std::string still = "type='Integer' minimum='1' maximum='1'/>";
-  EXPECT_THAT(error_of(one_scan("<cartesianX " + still + "<cartesianY " + still + "<cartesianZ " + still, 1000000000)),
+  EXPECT_THAT(e57_error(one_scan("<cartesianX " + still + "<cartesianY " + still + "<cartesianZ " + still, 1000000000)),
               HasSubstr("all in one place"));
 }
 
@@ -93,19 +93,19 @@ TEST(E57ReaderTest, AChangedByteIsAWrongChecksum) {
     std::string file = good;
     file[at] = static_cast<char>(file[at] ^ 4);
     // What no value needs is not read.
-    const std::string error = error_of(file);
+    const std::string error = e57_error(file);
     if (!error.empty()) {
       EXPECT_THAT(error, HasSubstr("one.e57: the checksum of E57 page"));
     }
   }
   std::string file = good;
   file[60] = static_cast<char>(file[60] ^ 1);
-  EXPECT_THAT(error_of(file), HasSubstr("the checksum of E57 page 0 is wrong"));
+  EXPECT_THAT(e57_error(file), HasSubstr("the checksum of E57 page 0 is wrong"));
 }
 
 TEST(E57ReaderTest, EveryTruncationIsAnError) {
   const std::string whole = two_scans();
-  for (size_t size = 8; size < whole.size(); size += 5) EXPECT_NE(error_of(whole.substr(0, size)), "") << size;
+  for (size_t size = 8; size < whole.size(); size += 5) EXPECT_NE(e57_error(whole.substr(0, size)), "") << size;
 }
 
 TEST(E57ReaderTest, ChangedBytesWithRightChecksumsAreReadOrRefused) {
@@ -119,7 +119,7 @@ TEST(E57ReaderTest, ChangedBytesWithRightChecksumsAreReadOrRefused) {
       file[at] = static_cast<char>(file[at] ^ 1 << random() % 8);
       mend(file, at / E57File::kPage * E57File::kPage);
     }
-    const std::string error = error_of(file);
+    const std::string error = e57_error(file);
     errors += error.empty() ? 0 : 1;
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }

@@ -44,16 +44,16 @@ TEST(ExpeReaderTest, EveryTruncationIsOneLineThatNamesTheFile) {
   }
 }
 
-std::string error_of(const std::string& text) {
+std::string expe_error(const std::string& text) {
   const auto points = testing::read_whole(testing::as_bytes(text), "surfels.pts");
   return points ? "" : points.error().message;
 }
 
 TEST(ExpeReaderTest, WhatCannotBeReadIsNamed) {
-  EXPECT_THAT(error_of("[Expe/PointSet/ASCII/0.1]\ndata\n"), HasSubstr("as text"));
-  EXPECT_THAT(error_of(header(3) + "x"), HasSubstr("states 3 points"));
-  EXPECT_THAT(error_of("[Expe/PointSet/Binary/0.1]\nproperty position no\ndata\n"), HasSubstr("no size of property"));
-  EXPECT_THAT(error_of("[Expe/PointSet/Binary/0.1]\nnofpoints 18446744073709551615\nproperty position 12\ndata\n"),
+  EXPECT_THAT(expe_error("[Expe/PointSet/ASCII/0.1]\ndata\n"), HasSubstr("as text"));
+  EXPECT_THAT(expe_error(header(3) + "x"), HasSubstr("states 3 points"));
+  EXPECT_THAT(expe_error("[Expe/PointSet/Binary/0.1]\nproperty position no\ndata\n"), HasSubstr("no size of property"));
+  EXPECT_THAT(expe_error("[Expe/PointSet/Binary/0.1]\nnofpoints 18446744073709551615\nproperty position 12\ndata\n"),
               HasSubstr("truncated"));
 }
 

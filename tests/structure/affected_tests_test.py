@@ -11,15 +11,15 @@ import affected_tests  # noqa: E402
 
 # A file, and programs or scripts of tests that must see it, and some that cannot.
 EXPECTED = [
-    ("shaders/splat.comp", {"renderer_gl_test", "shader_validation_test", "serve_test"}, {"scan_test", "laz_test"}),
-    ("shaders/shared/kernel.h", {"renderer_gl_test", "reference_test"}, {"laz_test"}),
+    ("shaders/splat.comp", {"render_gl_test", "shader_validation_test", "serve_test"}, {"scan_test", "laz_test"}),
+    ("shaders/shared/kernel.h", {"render_gl_test", "reference_test"}, {"laz_test"}),
     ("server/formats/scan/lzf.cpp", {"scan_test", "serve_test"}, {"laz_test"}),
-    ("server/draw/picture/picture.h", {"renderer_gl_test", "net_test", "view_test"}, {"laz_test"}),
+    ("server/draw/picture/picture.h", {"render_gl_test", "net_test", "view_test"}, {"laz_test"}),
     ("protocol/surfcast.proto", {"protocol_test", "net_test", "client_test"}, {"laz_test"}),
     ("client/web/src/state/place.ts", {"run_tests.sh"}, {"scan_test"}),
     ("client/python/surfcast/camera_path.py", {"run_tests.sh"}, {"scan_test"}),
-    ("tests/data/lion.drc", {"lion_gl_test"}, {"base_test"}),
-    ("docs/settings.md", {"settings_table_test"}, {"scan_test"}),
+    ("tests/data/lion.drc", {"simplify_gl_test"}, {"base_test"}),
+    ("docs/settings.md", {"cmd_test"}, {"scan_test"}),
 ]
 
 

@@ -27,22 +27,17 @@ using reference::LightPicture;
 using testing::light_of;
 using testing::ModelPointer;
 
-constexpr int kSide = 128;  // pixels
+constexpr int kSurfaceSide = 128;  // pixels
 constexpr glm::dvec3 kBlue{0.25, 0.45, 0.9};
 constexpr glm::dvec3 kOrange{0.95, 0.6, 0.2};
 constexpr glm::dvec3 kWhite{1, 0.95, 0.9};
 
-glm::dvec3 linear(const glm::dvec3& srgb) {
-  return {reference::linear_from_srgb(srgb.x), reference::linear_from_srgb(srgb.y),
-          reference::linear_from_srgb(srgb.z)};
-}
-
 /// A drawing of a grid on the device and in double precision.
-struct Comparison {
+struct SurfaceComparison {
   reference::VolumeGrid grid = reference::sampled(reference::torus_field(), glm::ivec3(32));
   std::vector<picture::TransferPoint> points{{0.15, kBlue, 0}, {0.5, kOrange, 0.15}, {0.9, kWhite, 0.35}};
   double spacing = 2.0 / 31;
-  geometry::CameraFrame frame = reference::volume_view("mid", kSide);
+  geometry::CameraFrame frame = reference::volume_view("mid", kSurfaceSide);
   geometry::Clip clip{};
   std::vector<picture::IsoSurface> isos{};
   std::vector<picture::Slice> slices{};
@@ -50,7 +45,7 @@ struct Comparison {
   double opacity = 1;
 };
 
-picture::PictureRequest request_of(const Comparison& comparison) {
+picture::PictureRequest request_of(const SurfaceComparison& comparison) {
   picture::PictureRequest request = testing::request_of(comparison.frame);
   request.volumes.transfer.points = comparison.points;
   request.volumes.transfer.spacing = comparison.spacing;
@@ -70,7 +65,7 @@ reference::SlicePlane plane_of(const picture::Slice& slice, const reference::Vol
   return {grid.place(index), glm::cross(grid.axes[(a + 1) % 3], grid.axes[(a + 2) % 3]), opacity};
 }
 
-LightPicture in_double(const Comparison& comparison) {
+LightPicture in_double(const SurfaceComparison& comparison) {
   std::vector<reference::TransferPoint> points;
   for (const picture::TransferPoint& p : comparison.points) {
     points.push_back({p.value, p.color, p.opacity * comparison.opacity});
@@ -78,7 +73,7 @@ LightPicture in_double(const Comparison& comparison) {
   reference::CubicRayParameters parameters;
   parameters.medium = comparison.medium;
   for (const picture::IsoSurface& iso : comparison.isos) {
-    parameters.isos.push_back({iso.value, linear(iso.color), iso.opacity * comparison.opacity});
+    parameters.isos.push_back({iso.value, reference::linear_from_srgb(iso.color), iso.opacity * comparison.opacity});
   }
   for (const picture::Slice& slice : comparison.slices) {
     parameters.slices.push_back(plane_of(slice, comparison.grid, comparison.opacity));
@@ -95,7 +90,7 @@ class VolumeSurfacesGL : public testing::VolumeRendererTest {
   static LightPicture draw(const ModelPointer& model, const picture::PictureRequest& request) {
     return light_of(frame_of(model, request).image);
   }
-  static void expect_same(const Comparison& comparison, const std::string& what) {
+  static void expect_same(const SurfaceComparison& comparison, const std::string& what) {
     const LightPicture drawn = draw(model_of(comparison.grid), request_of(comparison));
     const LightPicture expected = in_double(comparison);
     EXPECT_GT(testing::mean_opacity(expected), 0.005) << what << ": the picture must show something";
@@ -106,10 +101,10 @@ class VolumeSurfacesGL : public testing::VolumeRendererTest {
 };
 
 TEST_F(VolumeSurfacesGL, IsoSurfacesAreDrawnAsInDoublePrecision) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.isos = {{0.5, kOrange}};
   for (const char* view : {"mid", "wide", "inside"}) {
-    comparison.frame = reference::volume_view(view, kSide);
+    comparison.frame = reference::volume_view(view, kSurfaceSide);
     expect_same(comparison, view);
   }
   comparison.isos = {{0.6, kOrange}, {0.25, kBlue, 0.4}, {0.4, kWhite, 0.3}};
@@ -121,10 +116,10 @@ TEST_F(VolumeSurfacesGL, IsoSurfacesAreDrawnAsInDoublePrecision) {
 }
 
 TEST_F(VolumeSurfacesGL, SlicesAreDrawnAsInDoublePrecision) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.slices = {{{0.1, 0.05, -0.2}, {0.3, -0.4, 1}}};
   for (const char* view : {"mid", "wide", "inside"}) {
-    comparison.frame = reference::volume_view(view, kSide);
+    comparison.frame = reference::volume_view(view, kSurfaceSide);
     expect_same(comparison, view);
   }
   comparison.slices.push_back({.axis = 0, .index = 16});  // between sub-bricks
@@ -137,7 +132,7 @@ TEST_F(VolumeSurfacesGL, SlicesAreDrawnAsInDoublePrecision) {
 }
 
 TEST_F(VolumeSurfacesGL, SeveralBricksAreDrawnAsOneGrid) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.grid = reference::sampled(reference::torus_field(), {70, 45, 33});
   comparison.isos = {{0.5, kOrange, 0.7}};
   comparison.slices = {{.axis = 0, .index = 32}, {.axis = 1, .index = 31.5}};
@@ -145,7 +140,7 @@ TEST_F(VolumeSurfacesGL, SeveralBricksAreDrawnAsOneGrid) {
 }
 
 TEST_F(VolumeSurfacesGL, ClipBoxesCutThem) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.isos = {{0.5, kOrange}};
   comparison.slices = {{{0, 0, 0}, {0, 0.2, 1}}};
   comparison.clip.outside.push_back({{0.013, -2, -2}, {0.37, 2, 2}});
@@ -154,7 +149,7 @@ TEST_F(VolumeSurfacesGL, ClipBoxesCutThem) {
 }
 
 TEST_F(VolumeSurfacesGL, AxesOfAllKindsAreDrawnAsInDoublePrecision) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.grid = reference::sampled(reference::torus_field(), {40, 30, 16});
   comparison.isos = {{0.5, kOrange, 0.8}};
   comparison.slices = {{{0.1, 0, 0.1}, {1, 0.5, 0.2}}, {.axis = 2, .index = 7.5}};
@@ -178,18 +173,19 @@ LightPicture ideal_ball(const geometry::CameraFrame& frame, double radius) {
     const double square = middle * middle - glm::dot(frame.eye, frame.eye) + radius * radius;
     if (square < 0 || middle + std::sqrt(square) < 0) return glm::dvec4(0);
     const double t = middle - std::sqrt(square) > 0 ? middle - std::sqrt(square) : middle + std::sqrt(square);
-    return glm::dvec4(linear(kWhite) * reference::headlight(frame.eye + t * direction, direction), 1);
+    return glm::dvec4(reference::linear_from_srgb(kWhite) * reference::headlight(frame.eye + t * direction, direction),
+                      1);
   });
 }
 
 TEST_F(VolumeSurfacesGL, TheIsoSurfaceOfABallIsTheBall) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.grid =
       reference::sampled({"cone", [](const glm::dvec3& p) { return 1 - glm::length(p); }}, glm::ivec3(32));
   comparison.isos = {{0.3, kWhite}};
   const ModelPointer model = model_of(comparison.grid);
   for (const char* view : {"mid", "wide", "far"}) {
-    comparison.frame = reference::volume_view(view, kSide);
+    comparison.frame = reference::volume_view(view, kSurfaceSide);
     const double found = covered_psnr(draw(model, request_of(comparison)), ideal_ball(comparison.frame, 0.7));
     RecordProperty(std::string(view) + "_dB", std::to_string(found));
     EXPECT_GE(found, 38) << view;
@@ -201,15 +197,16 @@ TEST_F(VolumeSurfacesGL, TheIsoSurfaceOfABallIsTheBall) {
 }
 
 TEST_F(VolumeSurfacesGL, ASliceOfARampHasTheColoursOfTheFunction) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.grid =
       reference::sampled({"ramp", [](const glm::dvec3& p) { return 100 + 50 * p.x; }}, glm::ivec3(21, 17, 40));
   comparison.points = {{90, kBlue, 0}, {100, kOrange, 0}, {100, kWhite, 0}, {140, kBlue, 0}};
   comparison.slices = {{{0, 0, 0.25}, {0, 0, 1}}};
-  comparison.frame = *geometry::make_camera_frame({{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 30}, kSide, kSide);
+  comparison.frame = *geometry::make_camera_frame({{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 30}, kSurfaceSide, kSurfaceSide);
   const LightPicture drawn = draw(model_of(comparison.grid), request_of(comparison));
-  const glm::dvec3 steps[] = {linear(kBlue), linear(kOrange), linear(kWhite)};
-  for (int x = 12; x < kSide - 12; ++x) {
+  const glm::dvec3 steps[] = {reference::linear_from_srgb(kBlue), reference::linear_from_srgb(kOrange),
+                              reference::linear_from_srgb(kWhite)};
+  for (int x = 12; x < kSurfaceSide - 12; ++x) {
     const double value = 100 + 50 * 3.75 * comparison.frame.ray({x + 0.5, 0}).x;
     if (std::abs(value - 100) < 8 || std::abs(value - 90) < 8 || std::abs(value - 140) < 8) continue;  // filtered edges
     if (std::abs(value - 100) > 43) continue;  // samples repeat beyond the faces
@@ -222,9 +219,9 @@ TEST_F(VolumeSurfacesGL, ASliceOfARampHasTheColoursOfTheFunction) {
 }
 
 TEST_F(VolumeSurfacesGL, ASliceOnAFaceOfTheVolumeIsDrawn) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.grid = reference::sampled({"one", [](const glm::dvec3& p) { return p.x; }}, glm::ivec3(20));
-  comparison.frame = *geometry::make_camera_frame({{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 10}, kSide, kSide);
+  comparison.frame = *geometry::make_camera_frame({{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 10}, kSurfaceSide, kSurfaceSide);
   for (const double index : {0.0, 19.0}) {
     comparison.slices = {{.axis = 2, .index = index}};
     EXPECT_NEAR(testing::mean_opacity(draw(model_of(comparison.grid), request_of(comparison))), 1, 1e-5) << index;
@@ -234,13 +231,13 @@ TEST_F(VolumeSurfacesGL, ASliceOnAFaceOfTheVolumeIsDrawn) {
 }
 
 TEST_F(VolumeSurfacesGL, WithoutLightAnIsoSurfaceHasItsColour) {
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.isos = {{0.5, kOrange}};
   picture::PictureRequest request = request_of(comparison);
   request.shading = picture::Shading::kUnlit;
   const LightPicture drawn = draw(model_of(comparison.grid), request);
   for (const glm::dvec4& pixel : drawn.pixels) {
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(pixel[i], pixel.w * linear(kOrange)[i], 1e-5);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(pixel[i], pixel.w * reference::linear_from_srgb(kOrange)[i], 1e-5);
   }
 }
 
@@ -249,7 +246,7 @@ TEST_F(VolumeSurfacesGL, APictureWithoutThemRunsTheProgramOfVolumes) {
   config.kinds = testing::kinds_with_plain_bricks();
   const std::unique_ptr<Renderer> renderer = std::move(*Renderer::create(config));
   const auto programs = [&] { return std::ranges::count(renderer->programs(), std::string("volume.comp")); };
-  Comparison comparison;
+  SurfaceComparison comparison;
   comparison.medium = true;
   const ModelPointer model = model_of(comparison.grid);
   const picture::Frame before = testing::frame_of(*renderer, model, request_of(comparison));
@@ -282,7 +279,7 @@ class SurfelsAmongSurfacesGL : public VolumeSurfacesGL {
     return std::make_shared<const model::ModelFile>(std::move(*model::ModelFile::open(path)));
   }
   static picture::PictureRequest view(bool from_behind) {
-    Comparison comparison;
+    SurfaceComparison comparison;
     picture::PictureRequest request = request_of(comparison);
     request.camera = geometry::Camera{{0, 0, from_behind ? -5.0 : 5.0}, {0, 0, 0}, {0, 1, 0}, 30};
     request.shading = picture::Shading::kUnlit;
@@ -305,10 +302,12 @@ TEST_F(SurfelsAmongSurfacesGL, HideAndAreHidden) {
       const double towards = from_behind ? -z : z;  // nearer to the eye
       picture::PictureRequest request = view(from_behind);
       request.volumes.isos = {{0.3, kWhite}};
-      expect_front(draw(model, request), towards > 0.7 ? surfels : linear(kWhite), "iso-surface ", z);
+      expect_front(draw(model, request), towards > 0.7 ? surfels : reference::linear_from_srgb(kWhite), "iso-surface ",
+                   z);
       request.volumes.isos.clear();
       request.volumes.slices = {{{0, 0, 0.1}, {0, 0, 1}}};
-      expect_front(draw(model, request), towards > (from_behind ? -0.1 : 0.1) ? surfels : linear(kBlue), "slice ", z);
+      expect_front(draw(model, request),
+                   towards > (from_behind ? -0.1 : 0.1) ? surfels : reference::linear_from_srgb(kBlue), "slice ", z);
     }
   }
 }
@@ -317,7 +316,8 @@ TEST_F(SurfelsAmongSurfacesGL, AreSeenThroughTranslucentOnes) {
   picture::PictureRequest request = view(false);
   request.volumes.isos = {{0.3, kWhite, 0.25}};
   const LightPicture drawn = draw(model_with_square(0), request);
-  const glm::dvec3 expected = 0.25 * linear(kWhite) + 0.75 * reference::linear_from_srgb8(glm::dvec3(kSurfels));
+  const glm::dvec3 expected =
+      0.25 * reference::linear_from_srgb(kWhite) + 0.75 * reference::linear_from_srgb8(glm::dvec3(kSurfels));
   expect_front(drawn, expected, "through ", 0);
 }
 
