@@ -81,10 +81,10 @@ asan-all: sanitizer-packages
 	cmake/sanitize.sh asan-ubsan sanitized_tests '^unit|^gl-numerics|hostile'
 
 # The tests that are about threads, under the thread sanitizer; tsan-all: also those that use sockets.
-tsan: packages
+tsan: sanitizer-packages
 	cmake/sanitize.sh tsan thread_tests threads $(SEEN)
 
-tsan-all: packages
+tsan-all: sanitizer-packages
 	cmake/sanitize.sh tsan concurrent_tests 'threads|sockets'
 
 sanitizer-packages: packages

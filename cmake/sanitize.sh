@@ -9,7 +9,7 @@ target=$2
 labels=$3
 shift 3
 
-# The thread sanitizer of GCC 12 fails on kernels that randomize more than 28 bits of addresses, so randomization is
+# The thread sanitizer of clang 14 fails on kernels that randomize more than 28 bits of addresses, so randomization is
 # switched off where the system allows that.
 fixed=()
 if [ "$preset" = tsan ] && setarch --addr-no-randomize true 2>/dev/null; then

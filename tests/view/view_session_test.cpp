@@ -71,7 +71,8 @@ TEST_F(ViewOfAScanTest, StaysWithTheModelOnceItWasShown) {
 bool is_progressive(const ViewMessage& frame) {
   const std::vector<std::byte>& bytes = frame.picture.bytes;
   const std::array marker{std::byte{0xFF}, std::byte{0xC2}};
-  return std::ranges::search(bytes, marker).begin() != bytes.end();
+  // Not std::ranges::search: clang 14 does not compile it.
+  return std::search(bytes.begin(), bytes.end(), marker.begin(), marker.end()) != bytes.end();
 }
 
 TEST_F(ViewOfAScanTest, FilesAreThoseOfAPictureWithoutDepth) {
