@@ -17,9 +17,9 @@ demo:
 	@cmake/demo.sh build/bin demo
 
 # ALL=1: also the cases that otherwise run in `make nightly` alone.
-# Six at a time on two processors: the browser's and the sockets' tests wait more than they compute, and pictures count
+# Eight at a time on two processors: the browser's and the sockets' tests wait more than they compute, and pictures count
 # for two.
-TEST_JOBS = $(shell expr $$(nproc) \* 3)
+TEST_JOBS = $(shell expr $$(nproc) \* 4)
 test: build
 	cmake/run_tests.sh release build -j$(TEST_JOBS) $(if $(ALL),,--label-exclude nightly)
 

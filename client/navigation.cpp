@@ -12,10 +12,6 @@ namespace {
 constexpr double kHalfTurn = std::numbers::pi;  // radians for a drag over the height of the picture
 constexpr double kPoleMargin = 0.01;            // least angle between view direction and vertical axis, radians
 
-glm::dvec3 vector_of(const wire::Vector3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 void store(const glm::dvec3& v, wire::Vector3& out) {
   out.set_x(v.x);
   out.set_y(v.y);
@@ -59,6 +55,10 @@ double height_at_focus(const Pose& pose) {
 }
 
 }  // namespace
+
+glm::dvec3 vector_of(const wire::Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 Pose to_pose(const wire::Camera& camera) {
   return {vector_of(camera.position()), vector_of(camera.focal_point()), glm::normalize(vector_of(camera.view_up())),

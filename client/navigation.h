@@ -15,6 +15,7 @@ struct Pose {
   double view_angle = 30;     ///< vertical, degrees
 };
 
+glm::dvec3 vector_of(const wire::Vector3& v);
 Pose to_pose(const wire::Camera& camera);
 wire::Camera to_camera(const Pose& pose);
 

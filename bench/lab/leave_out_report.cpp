@@ -2,27 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "lab/markdown_table.h"
 
 namespace surfcast::lab {
 namespace {
 
 using nlohmann::ordered_json;
 
-std::string number(double value, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
-double rounded(double value) {
+double four_digits(double value) {
   return std::round(value * 1e4) / 1e4;
 }
 
-ordered_json rounded(const std::vector<double>& values) {
+ordered_json four_digits(const std::vector<double>& values) {
   ordered_json list = ordered_json::array();
-  for (const double value : values) list.push_back(rounded(value));
+  for (const double value : values) list.push_back(four_digits(value));
   return list;
 }
 
@@ -47,13 +42,13 @@ ordered_json json_of(const LeaveOutFigures& f, const LeaveOutResult& result) {
   for (const CameraResult& camera : result.cameras) cameras.push_back(json_of(camera));
   return {{"scan", f.scan},
           {"points", f.points},
-          {"off_surface", rounded(f.off_surface)},
-          {"hidden", rounded(f.hidden)},
-          {"missing", rounded(f.missing)},
-          {"surface_hidden", rounded(f.surface_hidden)},
-          {"largest_radius", rounded(f.largest_radius)},
-          {"colors", rounded(f.colors)},
-          {"near_colors", rounded(f.near_colors)},
+          {"off_surface", four_digits(f.off_surface)},
+          {"hidden", four_digits(f.hidden)},
+          {"missing", four_digits(f.missing)},
+          {"surface_hidden", four_digits(f.surface_hidden)},
+          {"largest_radius", four_digits(f.largest_radius)},
+          {"colors", four_digits(f.colors)},
+          {"near_colors", four_digits(f.near_colors)},
           {"cameras", cameras}};
 }
 
@@ -61,12 +56,6 @@ LeaveOutFigures figures_of(const ordered_json& json) {
   return {json.at("scan"),           json.at("points"),  json.at("off_surface"),
           json.at("hidden"),         json.at("missing"), json.at("surface_hidden"),
           json.at("largest_radius"), json.at("colors"),  json.at("near_colors")};
-}
-
-std::string row(const std::vector<std::string>& cells) {
-  std::string line = "|";
-  for (const std::string& cell : cells) line += " " + cell + " |";
-  return line + "\n";
 }
 
 /// The figures that change with the model.
@@ -97,11 +86,11 @@ const LeaveOutFigures* find(const LeaveOutReport& report, const std::string& sca
   return found == report.scans.end() ? nullptr : &*found;
 }
 
-std::string header(const LeaveOutReport& report, const std::optional<LeaveOutReport>& before) {
+std::string header_of(const LeaveOutReport& report, const std::optional<LeaveOutReport>& before) {
   std::vector<std::string> titles{"scan", "points", "off surface"};
   if (before) join(titles, changing_titles("before: ", before->sigmas));
   join(titles, changing_titles(before ? "now: " : "", report.sigmas));
-  return row(titles) + row(std::vector<std::string>(titles.size(), "---"));
+  return header(titles);
 }
 
 }  // namespace
@@ -127,7 +116,7 @@ LeaveOutFigures figures_of(const LeaveOutResult& result) {
 std::string json_of(const LeaveOutReport& report, const std::vector<LeaveOutResult>& results) {
   ordered_json scans = ordered_json::array();
   for (size_t i = 0; i < results.size(); ++i) scans.push_back(json_of(report.scans[i], results[i]));
-  return ordered_json{{"sigmas", rounded(report.sigmas)}, {"scans", scans}}.dump(1) + "\n";
+  return ordered_json{{"sigmas", four_digits(report.sigmas)}, {"scans", scans}}.dump(1) + "\n";
 }
 
 std::optional<LeaveOutReport> report_of(const std::string& json) {
@@ -142,7 +131,7 @@ std::optional<LeaveOutReport> report_of(const std::string& json) {
 }
 
 std::string markdown_of(const LeaveOutReport& report, const std::optional<LeaveOutReport>& before) {
-  std::string text = header(report, before);
+  std::string text = header_of(report, before);
   for (const LeaveOutFigures& f : report.scans) {
     std::vector<std::string> cells{f.scan, std::to_string(f.points), number(f.off_surface, 1)};
     if (before) join(cells, changing_cells(find(*before, f.scan), before->sigmas));

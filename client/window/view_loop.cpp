@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "client/navigation.h"
 #include "client/view.h"
 #include "client/window/video_decoder.h"
 #include "client/window/warped_view.h"
@@ -23,12 +24,10 @@ constexpr milliseconds kUpdateEvery{16};  // least time between two updates
 constexpr milliseconds kRetryEvery{1000};
 constexpr double kFlightPart = 0.06;  // flight speed: share of the model's diagonal per second
 
-glm::dvec3 vector_of(const wire::Vector3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 Subject subject_of(const wire::ModelDescription& model) {
-  return {{vector_of(model.bounds().min()), vector_of(model.bounds().max())}, model.z_up(), model.upside_down()};
+  return {{client::vector_of(model.bounds().min()), client::vector_of(model.bounds().max())},
+          model.z_up(),
+          model.upside_down()};
 }
 
 /// Counts frames in intervals of one second; `last` is the count of the last complete interval.
@@ -181,7 +180,7 @@ Status ViewLoop::step(client::View& view) {
 Status ViewLoop::focus(client::View& view) {
   if (!controls_) return {};
   if (const auto picked = view.take_picked(); picked && picked->hit()) {
-    controls_->focus_on(vector_of(picked->position()));
+    controls_->focus_on(client::vector_of(picked->position()));
   }
   const std::optional<glm::dvec2> request = controls_->take_focus_request();
   if (!request) return {};

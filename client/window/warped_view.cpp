@@ -5,19 +5,16 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "client/navigation.h"
 #include "geometry/camera.h"
 
 namespace surfcast::window {
 namespace {
 
-glm::dvec3 vector_of(const wire::Vector3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 Result<geometry::CameraFrame> frame_of(const wire::Camera& camera, int width, int height) {
-  return geometry::make_camera_frame(
-      {vector_of(camera.position()), vector_of(camera.focal_point()), vector_of(camera.view_up()), camera.view_angle()},
-      width, height);
+  return geometry::make_camera_frame({client::vector_of(camera.position()), client::vector_of(camera.focal_point()),
+                                      client::vector_of(camera.view_up()), camera.view_angle()},
+                                     width, height);
 }
 
 /// Whether two cameras show the same, but for rounding: the server states the camera of a first picture with another
