@@ -19,7 +19,6 @@ const painted = (at: number, moving = true): PaintedFrame => ({
   frame: create(ViewFrameSchema, { moving, picture: { stages } }),
   bytes: 1000,
   arrived: at - 6,
-  whole: true,
   decoded: at - 2,
   painted: at,
 });

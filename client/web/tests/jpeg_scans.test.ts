@@ -1,6 +1,7 @@
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { FileFormat, ViewFrameSchema, type ViewFrame } from '../src/generated/surfcast_pb';
+import * as store from '../src/state/store';
 import { FrameAssembler } from '../src/view/assembler';
 import { endedAt, showableBytes } from '../src/view/jpeg_scans';
 import { progressiveJpeg as file } from './support/jpeg';
@@ -52,19 +53,27 @@ describe('a frame in pieces', () => {
   it('is handed on before it is whole, once for each part that can be shown', () => {
     const assembler = new FrameAssembler();
     const early = assembler.take(piece(file.subarray(0, first), true), 5, 1);
-    expect(early?.whole).toBe(false);
+    expect(early?.frame.more).toBe(true);
     expect([...early!.frame.picture!.data]).toEqual([...endedAt(file, first - 2)]);
     expect(assembler.take(piece(file.subarray(first, first + 1), true), 1, 2)).toBeUndefined();
     const whole = assembler.take(piece(file.subarray(first + 1), false), 4, 3);
-    expect(whole).toMatchObject({ whole: true, bytes: 10, arrived: 3 });
+    expect(whole).toMatchObject({ frame: { more: false }, bytes: 10, arrived: 3 });
     expect([...whole!.frame.picture!.data]).toEqual([...file]);
+  });
+
+  it('is not the final picture of a view before its last piece', () => {
+    store.frameIsCurrent.value = true;
+    for (const more of [true, false]) {
+      store.shownFrame.value = create(ViewFrameSchema, { more, picture: { converged: true } });
+      expect(store.pictureSettled.value).toBe(!more);
+    }
   });
 
   it('begins anew with the next one', () => {
     const assembler = new FrameAssembler();
     assembler.take(piece(file.subarray(0, first), true), 5, 1);
     const next = create(ViewFrameSchema, { ...piece(file.subarray(0, first), true), frame: 2n });
-    expect(assembler.take(next, 5, 1)?.whole).toBe(false);
+    expect(assembler.take(next, 5, 1)?.frame.more).toBe(true);
   });
 
   it('of another format waits for its last piece', () => {

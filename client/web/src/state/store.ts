@@ -149,7 +149,7 @@ export const pictureSettled = computed(() => {
   const frame = shownFrame.value;
   if (!frame || !frameIsCurrent.value) return false;
   if (updatePending.value || resizing.value || moving.value) return false;
-  return frame.update >= wantedUpdate.value && !frame.moving && frame.picture?.converged === true;
+  return frame.update >= wantedUpdate.value && !frame.moving && !frame.more && frame.picture?.converged === true;
 });
 
 /** Colours and opacities by attribute belong to surfels. A server that does not count its items by kind has no others. */

@@ -10,15 +10,15 @@ import type { ArrivedFrame } from './frame_decoder';
 export class FrameAssembler {
   private pieces: ViewFrame[] = [];
   private bytes = 0;
-  private shown = 0; // bytes of the picture that frames which are not whole had
+  private shown = 0; // bytes of the picture that early frames had
 
-  /** Adds a piece; returns the frame when the piece is its last, or when more of it can be shown before that. */
+  /** Adds a piece; returns the frame when the piece is its last, or, with `more`, when more of it can be shown. */
   take(piece: ViewFrame, bytes: number, arrived: number): ArrivedFrame | undefined {
     if (this.pieces[0] && this.pieces[0].frame !== piece.frame) this.drop();
     this.pieces.push(piece);
     this.bytes += bytes;
     if (piece.more) return this.early(arrived);
-    const frame = { frame: joined(this.pieces), bytes: this.bytes, arrived, whole: true };
+    const frame = { frame: joined(this.pieces), bytes: this.bytes, arrived };
     this.drop();
     return frame;
   }
@@ -31,7 +31,7 @@ export class FrameAssembler {
     if (showable <= this.shown) return undefined;
     this.shown = showable;
     const data = endedAt(picture.data, showable);
-    return { frame: { ...frame, picture: { ...picture, data } }, bytes: this.bytes, arrived, whole: false };
+    return { frame: { ...frame, more: true, picture: { ...picture, data } }, bytes: this.bytes, arrived };
   }
 
   private drop(): void {

@@ -14,13 +14,14 @@ const types: Readonly<Record<FileFormat, string>> = {
 
 export const mediaType = (format: FileFormat): string => types[format];
 
-/** A received frame and its time of arrival (performance.now()). */
+/**
+ * A received frame and its time of arrival (performance.now()). With `frame.more`, sharper pictures of the same frame
+ * follow, and its messages have been acknowledged.
+ */
 export interface ArrivedFrame {
   readonly frame: ViewFrame;
   readonly bytes: number;
   readonly arrived: number;
-  /** False: sharper pictures of the same frame follow. Its messages have been acknowledged. */
-  readonly whole: boolean;
   /** The request that it shows, if it is known. */
   readonly asked?: DrawPicture | undefined;
 }

@@ -140,9 +140,9 @@ export class ViewController {
     const { taken } = this;
     this.taken = undefined;
     if (!taken) return;
-    const { frame, arrived, whole } = taken;
+    const { frame, arrived } = taken;
     const painted = performance.now();
-    if (whole) {
+    if (!frame.more) {
       this.collector.painted({ ...taken, painted }, this.sentAt.get(frame.update));
       this.session?.acknowledge(frame.frame, painted - arrived);
     }
@@ -305,14 +305,14 @@ export class ViewController {
     this.schedule();
   }
 
-  /** A frame that is not whole is sharper than one in motion, but not than another one at rest. */
-  private sharpens({ frame, whole }: ArrivedFrame): boolean {
+  /** A frame of which more follows is sharper than one in motion, but not than another one at rest. */
+  private sharpens({ frame }: ArrivedFrame): boolean {
     const shown = store.shownFrame.peek();
-    return whole || !shown || shown.moving || shown.frame === frame.frame;
+    return !frame.more || !shown || shown.moving || shown.frame === frame.frame;
   }
 
-  private skipped({ frame, arrived, whole }: ArrivedFrame): void {
-    if (whole) this.session?.acknowledge(frame.frame, performance.now() - arrived);
+  private skipped({ frame, arrived }: ArrivedFrame): void {
+    if (!frame.more) this.session?.acknowledge(frame.frame, performance.now() - arrived);
   }
 
   /** A frame that cannot be decoded is not shown. If it is a packet of a video, the view goes on without one. */
