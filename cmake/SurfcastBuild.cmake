@@ -296,8 +296,9 @@ endfunction()
 # surfcast_test(NAME [COMPUTES] [PARTS n] [NIGHTLY pattern...] SOURCES file... [LIBS lib...] [LABELS label...])
 # One GoogleTest program of one module, and one test of ctest: most cases take less time than a process needs to start.
 # PARTS: the cases are dealt out to n tests, NAME_1 to NAME_n, which run beside each other. For programs that take more
-# than half a minute. A label is one word with parts that ctest can select (-L gl, -LE slow): first the requirements of a
-# test, then its suite, as in gl-slow-numerics.
+# than half a minute and do not draw: processes that draw compile the same shaders, each of them where none is cached.
+# A label is one word with parts that ctest can select (-L gl, -LE slow): first the requirements of a test, then its
+# suite, as in gl-slow-numerics.
 # Suites of the sanitizers: `bytes` and `hostile` read bytes of strangers, the latter slowly, and run under the address
 # sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
 # under it in `make nightly`, as all unit tests do under the address sanitizer.
@@ -363,7 +364,7 @@ function(surfcast_add_cases program name parts filter labels)
     endif()
     add_test(NAME ${test} COMMAND ${program} ${arguments})
     set(cost 20)
-    if(labels MATCHES "hostile|slow" OR parts GREATER 1)
+    if(labels MATCHES "gl|hostile|slow" OR parts GREATER 1)
       set(cost 40)
     endif()
     if(labels MATCHES "gl")
