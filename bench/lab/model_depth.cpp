@@ -12,10 +12,6 @@ namespace surfcast::lab {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Discs reach at most this far on the screen beyond their own radius, pixels (shaders/shared/kernel.h: 0.6).
-constexpr double kPrefilterReach = 1;
-/// Upper bound of a surfel's extent, in radii: that of its kernel.
-constexpr double kExtent = 1.1;
 
 void append(const model::DecodedBlock& block, DrawnSurfels& surfels) {
   const float widest = surfel::largest_drawn_radius(block.radii, block.scatter);
@@ -40,7 +36,7 @@ Projected project(const DrawnSurfels& surfels, const geometry::CameraFrame& fram
   Projected projected;
   for (size_t i = 0; i < surfels.positions.size(); ++i) {
     const glm::dvec3 centre = frame.to_camera(surfels.positions[i]);
-    const PixelBox box = pixels_within(frame, centre, kExtent * surfels.radii[i], kPrefilterReach);
+    const PixelBox box = pixels_within(frame, centre, kLargestExtent * surfels.radii[i], kPrefilterReach);
     if (box.empty()) continue;
     const bool scatter = !surfels.scatter.empty() && surfels.scatter[i] != 0;
     const glm::dvec3 normal = scatter ? kinds::facing_eye(centre) : frame.rotate(surfels.normals[i]);

@@ -31,6 +31,11 @@ inline bool beside_picture(const geometry::CameraFrame& frame, const glm::dvec3&
   return outside(centre.x, frame.width) || outside(centre.y, frame.height);
 }
 
+/// Upper bound of a surfel's extent, in radii: that of its kernel.
+inline constexpr double kLargestExtent = 1.1;
+/// Discs reach at most this far on the screen beyond their own radius, pixels (shaders/shared/kernel.h: 0.6).
+inline constexpr double kPrefilterReach = 1;
+
 /// The pixels whose centres are within `margin` pixels of the picture of a sphere (centre in the camera frame, radius
 /// in world units). All pixels if the sphere is about to reach the plane of the eye and the picture; none if it is
 /// behind that plane.

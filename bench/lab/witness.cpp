@@ -36,10 +36,6 @@ constexpr double kSplatFactor = 0.25;  ///< of the distance to the nearest point
 constexpr size_t kSampling = 8;        ///< the spacing of the surfaces around is a median over every eighth point
 constexpr size_t kSamples = 8;         ///< of a surface, and of these eight
 
-/// Bounds of the pixels of a disc: its extent in radii, and how far the prefilter of visibility widens it, pixels.
-constexpr double kWidestDisc = 1.1;
-constexpr double kWidening = 1;
-
 // The radius of a disc, as in docs/kernel.md, Radii.
 constexpr double kLargestRatio = 3;
 constexpr double kReachShare = 0.6;
@@ -266,7 +262,7 @@ DepthPicture witness_depths(std::span<const glm::dvec3> points, std::span<const 
   std::vector<PixelBox> boxes;
   for (size_t i = 0; i < points.size(); ++i) {
     const CameraDisc disc = in_camera(points[i], witness[i], frame);
-    const PixelBox box = pixels_within(frame, disc.centre, kWidestDisc * disc.radius, kWidening);
+    const PixelBox box = pixels_within(frame, disc.centre, kLargestExtent * disc.radius, kPrefilterReach);
     if (box.empty()) continue;
     discs.push_back(disc);
     boxes.push_back(box);

@@ -11,6 +11,7 @@
 #include "gaussian/gaussian_scenes.h"
 #include "model/test_folder.h"
 #include "reference/gaussian_renderer.h"
+#include "support/mentions.h"
 
 namespace surfcast::gaussian {
 namespace {

@@ -131,10 +131,6 @@ ModelPointer build_and_open(const std::filesystem::path& input, const std::files
   return model ? std::make_shared<const model::ModelFile>(std::move(*model)) : nullptr;
 }
 
-bool mentions(const std::vector<std::string>& names, const std::string& what) {
-  return std::ranges::any_of(names, [&](const std::string& name) { return name.find(what) != std::string::npos; });
-}
-
 picture::Frame draw(render::Renderer& renderer, const ModelPointer& model, const picture::PictureRequest& request) {
   const std::atomic<bool> never{false};
   Result<picture::Frame> frame = renderer.draw(model, request, never);

@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "model/model_file.h"
 #include "reference/gaussian_model.h"
@@ -31,9 +29,6 @@ using ModelPointer = std::shared_ptr<const model::ModelFile>;
 /// Builds a file and opens the model. `memory`: of the build, bytes.
 ModelPointer build_and_open(const std::filesystem::path& input, const std::filesystem::path& target,
                             std::optional<uint64_t> memory = {});
-
-/// Whether a name has the text `what` in it.
-bool mentions(const std::vector<std::string>& names, const std::string& what);
 
 picture::Frame draw(render::Renderer& renderer, const ModelPointer& model, const picture::PictureRequest& request);
 

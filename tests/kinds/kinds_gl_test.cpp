@@ -15,6 +15,7 @@
 #include "pick/pick_surfel.h"
 #include "render/renderer.h"
 #include "render/shader_library.h"
+#include "support/mentions.h"
 
 namespace surfcast::kinds {
 namespace {
@@ -287,10 +288,6 @@ TEST_F(KindsGLTest, PicksTakeWhatThePictureShows) {
   }
 }
 
-bool mentions(const std::vector<std::string>& programs, const char* what) {
-  return std::ranges::any_of(programs, [&](const std::string& name) { return name.find(what) != std::string::npos; });
-}
-
 TEST_F(KindsGLTest, AKindCompilesNothingWhereItIsNotSeen) {
   const ModelPointer model = mixed();
   const std::unique_ptr<render::Renderer> renderer = renderer_of(testing::kinds_with_balls());
@@ -298,17 +295,17 @@ TEST_F(KindsGLTest, AKindCompilesNothingWhereItIsNotSeen) {
   request.silhouettes = true;
   request.camera = geometry::Camera{{-1.25, -1.25, 1}, {-1.25, -1.25, 0}, {0, 1, 0}, 20};  // a corner of the square
   ASSERT_TRUE(draw(*renderer, model, request));
-  EXPECT_FALSE(mentions(renderer->programs(), "ball"));
-  EXPECT_TRUE(mentions(renderer->programs(), "projection of surfel"));
+  EXPECT_FALSE(testing::mentions(renderer->programs(), "ball"));
+  EXPECT_TRUE(testing::mentions(renderer->programs(), "projection of surfel"));
   request = scene_view();
   ASSERT_TRUE(draw(*renderer, model, request));
   for (const char* name : {"projection of ball", "splat.comp with ball"}) {
-    EXPECT_TRUE(mentions(renderer->programs(), name)) << name;
+    EXPECT_TRUE(testing::mentions(renderer->programs(), name)) << name;
   }
   const ModelPointer balls = open(testing::write_balls(folder_ / "balls.surf", scene_));
   const std::unique_ptr<render::Renderer> other = renderer_of(testing::kinds_with_balls());
   ASSERT_TRUE(draw(*other, balls, scene_view()));
-  EXPECT_FALSE(mentions(other->programs(), "projection of surfel"));
+  EXPECT_FALSE(testing::mentions(other->programs(), "projection of surfel"));
 }
 
 TEST(KindShadersTest, TheTextForSurfelsAloneHasNothingOfOtherKinds) {

@@ -286,7 +286,7 @@ LightPicture ellipsoid_picture(std::span<const EllipsoidGlyph> glyphs, const geo
 glm::dvec3 direction_color(const EllipsoidGlyph& glyph) {
   const double w = (glyph.values.x - glyph.values.y) / glyph.values.x;
   const glm::dvec3 code = 0.5 * (1 - w) + w * glm::abs(glm::mat3_cast(glyph.rotation)[0]);
-  return {linear_from_srgb(code.x), linear_from_srgb(code.y), linear_from_srgb(code.z)};
+  return linear_from_srgb(code);
 }
 
 EllipsoidScene make_ellipsoid_scene(const std::string& name) {

@@ -12,6 +12,7 @@
 #include "reference/volume_scenes.h"
 #include "render/renderer.h"
 #include "support/clouds.h"
+#include "support/mentions.h"
 #include "volume/grid_scene.h"
 #include "volume/volume_pictures.h"
 #include "volume/volume_renderer_fixture.h"
@@ -251,8 +252,7 @@ class SurfelsInVolumeGL : public VolumeGL {
     const auto passed = [&](double to) {
       return std::clamp(to - (kDistance - kHalf), 0.0, 2 * kHalf) * stretched * extinction;
     };
-    const glm::dvec3 volume(reference::linear_from_srgb(kVolume.x), reference::linear_from_srgb(kVolume.y),
-                            reference::linear_from_srgb(kVolume.z));
+    const glm::dvec3 volume = reference::linear_from_srgb(kVolume);
     const double seen = std::exp(-passed(plane));
     return {(1 - seen) * volume + seen * reference::linear_from_srgb8(glm::dvec3(kSurfels)), 1};
   }
@@ -289,10 +289,6 @@ TEST_F(SurfelsInVolumeGL, ARegionHasThePixelsOfTheWholePicture) {
   }
 }
 
-bool mentions(const std::vector<std::string>& programs, const char* what) {
-  return std::ranges::any_of(programs, [&](const std::string& name) { return name.find(what) != std::string::npos; });
-}
-
 TEST_F(SurfelsInVolumeGL, APictureWithoutAVolumeCompilesNothingOfVolumes) {
   const auto model = model_with_plane(3);
   RendererConfig config;
@@ -303,10 +299,10 @@ TEST_F(SurfelsInVolumeGL, APictureWithoutAVolumeCompilesNothingOfVolumes) {
   request.camera = geometry::Camera{{0, 0, 3.5}, {0, 0, 4}, {0, 1, 0}, 20};
   request.camera->position = {0, 0, 2.5};  // the square before the eye, the cube behind it
   ASSERT_TRUE(renderer->draw(model, request, never));
-  EXPECT_TRUE(mentions(renderer->programs(), "splat.comp"));
-  EXPECT_FALSE(mentions(renderer->programs(), "volume"));
+  EXPECT_TRUE(testing::mentions(renderer->programs(), "splat.comp"));
+  EXPECT_FALSE(testing::mentions(renderer->programs(), "volume"));
   ASSERT_TRUE(renderer->draw(model, view(false), never));
-  EXPECT_TRUE(mentions(renderer->programs(), "volume.comp"));
+  EXPECT_TRUE(testing::mentions(renderer->programs(), "volume.comp"));
 }
 
 TEST_F(VolumePrecisionGL, TheSamePictureHasTheSameBytesForEveryOrderOfBlocks) {
