@@ -15,7 +15,9 @@ Gaussians make_gaussians(uint64_t count, int degree) {
 }
 
 double rounded_to_float(double value) {
-  return static_cast<double>(static_cast<float>(value));
+  // GCC 12 leaves the rounding out where it vectorizes two conversions to float and back; volatile keeps it.
+  const volatile auto rounded = static_cast<float>(value);
+  return rounded;
 }
 
 float opacity_of_logit(double logit) {
