@@ -159,7 +159,8 @@ endfunction()
 
 # surfcast_join_sources(TARGET): compiles several sources of TARGET together, if SURFCAST_JOIN is on. This halves the
 # compile time, because each header is read and each template instantiated once for all of them. The presets release,
-# asan-ubsan and tsan do so. The preset dev does not: in it, a change of one source compiles one source.
+# asan-ubsan and tsan do so. The preset dev does not: in it, a change of one source compiles one source. Names in unnamed
+# namespaces are therefore unique in a target.
 # CMake's own UNITY_BUILD writes absolute paths, by which a compiler cache takes each checkout for another program.
 function(surfcast_join_sources target)
   if(SURFCAST_JOIN)
@@ -174,7 +175,7 @@ endfunction()
 
 # Replaces the sources of TARGET by files that include up to SURFCAST_JOINED_SOURCES of them each, but for sources with
 # definitions or the property SURFCAST_COMPILE_ALONE, such as generated ones.
-set(SURFCAST_JOINED_SOURCES 12)
+set(SURFCAST_JOINED_SOURCES 32 CACHE STRING "The most sources of a target that are compiled together")
 function(surfcast_join_sources_now target)
   get_target_property(sources ${target} SOURCES)
   set(joined)

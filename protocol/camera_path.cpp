@@ -96,7 +96,7 @@ Vector upright(const Vector& up, const Vector& view) {
   return length(part) > 1e-9 ? unit(part) : up;
 }
 
-Status check_camera(const wire::Camera& camera) {
+Status check_path_camera(const wire::Camera& camera) {
   wire::DrawPicture picture;
   picture.set_model("any");
   *picture.mutable_camera() = camera;
@@ -113,7 +113,7 @@ Result<Keyframe> read_keyframe(json document, size_t number) {
   document.erase("time");
   if (!std::isfinite(keyframe.time)) return invalid_input(name + "the time must be finite");
   Status status = parse_camera_json(json_text(document), keyframe.camera);
-  if (status) status = check_camera(keyframe.camera);
+  if (status) status = check_path_camera(keyframe.camera);
   if (!status) return invalid_input(name + status.error().message);
   return keyframe;
 }
@@ -133,7 +133,7 @@ Result<wire::Camera> camera_of_view(const json& view) {
       return invalid_input(std::string(field) + ": " + status.error().message);
     }
   }
-  if (Status status = check_camera(picture.camera()); !status) return fail(status);
+  if (Status status = check_path_camera(picture.camera()); !status) return fail(status);
   return picture.camera();
 }
 

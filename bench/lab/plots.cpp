@@ -9,8 +9,8 @@ namespace surfcast::lab {
 namespace {
 
 constexpr int kColumns = 4;
-constexpr double kWidth = 250;   ///< of a plot with its margins
-constexpr double kHeight = 210;  ///< of a plot with its margins
+constexpr double kPlotWidth = 250;   ///< of a plot with its margins
+constexpr double kPlotHeight = 210;  ///< of a plot with its margins
 constexpr double kLeft = 38;
 constexpr double kRight = 12;
 constexpr double kTop = 24;
@@ -51,10 +51,10 @@ class ScenePlot {
 
  private:
   [[nodiscard]] double x(double ms) const {
-    return x0_ + kLeft + (kWidth - kLeft - kRight) * std::log(ms / least_ms_) / std::log(most_ms_ / least_ms_);
+    return x0_ + kLeft + (kPlotWidth - kLeft - kRight) * std::log(ms / least_ms_) / std::log(most_ms_ / least_ms_);
   }
   [[nodiscard]] double y(double db) const {
-    return y0_ + kHeight - kBottom - (kHeight - kTop - kBottom) * (db - least_db_) / (most_db_ - least_db_);
+    return y0_ + kPlotHeight - kBottom - (kPlotHeight - kTop - kBottom) * (db - least_db_) / (most_db_ - least_db_);
   }
 
   [[nodiscard]] std::string frame() const {
@@ -64,7 +64,7 @@ class ScenePlot {
       svg += format(
           "<path d=\"M%.1f %.1fH%.1f\" stroke=\"#ddd\"/><text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%g"
           "</text>\n",
-          x0_ + kLeft, y(db), x0_ + kWidth - kRight, x0_ + kLeft - 4, y(db) + 4, db);
+          x0_ + kLeft, y(db), x0_ + kPlotWidth - kRight, x0_ + kLeft - 4, y(db) + 4, db);
     }
     for (double power = -1; power <= 4; ++power) {
       for (const double digit : {1.0, 2.0, 5.0}) {
@@ -128,8 +128,8 @@ std::string legend(const LabResults& results) {
 
 std::string svg_of(const LabResults& results) {
   const auto rows = static_cast<double>((results.scenes.size() + kColumns - 1) / kColumns);
-  const double width = kColumns * kWidth;
-  const double height = kLegend + rows * kHeight;
+  const double width = kColumns * kPlotWidth;
+  const double height = kLegend + rows * kPlotHeight;
   std::string svg = format(
                         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" font-family=\"sans-serif\" "
                         "font-size=\"11\">\n<rect width=\"%g\" height=\"%g\" fill=\"white\"/>\n",
@@ -138,7 +138,7 @@ std::string svg_of(const LabResults& results) {
   for (size_t i = 0; i < results.scenes.size(); ++i) {
     const auto column = static_cast<double>(i % kColumns);
     const auto line = static_cast<double>(i / kColumns);
-    svg += ScenePlot(results.scenes[i], column * kWidth, kLegend + line * kHeight).svg();
+    svg += ScenePlot(results.scenes[i], column * kPlotWidth, kLegend + line * kPlotHeight).svg();
   }
   return svg + "</svg>\n";
 }

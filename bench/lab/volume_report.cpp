@@ -49,7 +49,7 @@ std::string table_of(const std::vector<FileResult>& files) {
   return text + "\n";
 }
 
-ordered_json json_of(const LabResults& results) {
+ordered_json scenes_of(const LabResults& results) {
   ordered_json scenes = ordered_json::array();
   for (const SceneResult& scene : results.scenes) {
     ordered_json measurements = ordered_json::array();
@@ -86,8 +86,8 @@ std::string json_of(const VolumeResults& results) {
   }
   return ordered_json{{"device", results.volumes.device},
                       {"frames", results.volumes.frames},
-                      {"volumes", json_of(results.volumes)},
-                      {"gaussians", json_of(results.gaussians)},
+                      {"volumes", scenes_of(results.volumes)},
+                      {"gaussians", scenes_of(results.gaussians)},
                       {"files", files}}
              .dump(1) +
          "\n";

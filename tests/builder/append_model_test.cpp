@@ -16,6 +16,7 @@
 #include "builder/text_scan.h"
 #include "model/model_file.h"
 #include "model/test_folder.h"
+#include "support/file_content.h"
 
 namespace surfcast::builder {
 namespace {
@@ -32,11 +33,6 @@ std::set<uint64_t> checksums_of(const fs::path& path, bool leaves) {
     if ((block.level == 0) == leaves) checksums.insert(block.checksum);
   }
   return checksums;
-}
-
-std::string content_of(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// Hills of side by side points, some of them.
@@ -75,10 +71,10 @@ class AppendModelTest : public ::testing::Test {
   }
   /// The error of an attempt that must fail, and must leave the model and nothing else.
   [[nodiscard]] std::string refused(const fs::path& input) const {
-    const std::string before = content_of(model_);
+    const std::string before = testing::file_content(model_);
     const Result<BuildReport> report = append_to_model(std::vector{input}, model_, {}, [](const BuildStep&) {});
     EXPECT_FALSE(report);
-    EXPECT_EQ(content_of(model_), before);
+    EXPECT_EQ(testing::file_content(model_), before);
     return report ? "" : report.error().message;
   }
   /// Compares the model with that of all inputs.
@@ -200,16 +196,16 @@ TEST_F(AppendModelTest, AModelOfOneBlockGrows) {
 
 TEST_F(AppendModelTest, ASmallMemoryMakesTheSameBytes) {
   const fs::path far = write("far.xyz", hills(360, 700, 200), 80000);
-  const std::string before = content_of(model_);
+  const std::string before = testing::file_content(model_);
   AppendOptions options;
   options.part_points = 5000;
   append({far}, options);
-  const std::string with_all = content_of(model_);
+  const std::string with_all = testing::file_content(model_);
   std::ofstream(model_, std::ios::binary) << before;
   options.memory = uint64_t{400} << 20;
   const BuildReport report = append({far}, options);
   EXPECT_EQ(report.memory_budget, uint64_t{400} << 20);
-  EXPECT_TRUE(content_of(model_) == with_all);
+  EXPECT_TRUE(testing::file_content(model_) == with_all);
 }
 
 /// At this latitude zones 32 and 33 meet where eastings are 720.6 km in one and 279.4 km in the other.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <numeric>
 #include <random>
@@ -15,6 +14,7 @@
 #include "builder/text_scan.h"
 #include "builder/work_folder.h"
 #include "model/test_folder.h"
+#include "support/file_content.h"
 
 namespace surfcast::builder {
 namespace {
@@ -24,11 +24,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const BuildProgress kSilent = [](const BuildStep&) {};
-
-std::string bytes_in(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 PlanRequest request_for(std::optional<size_t> parts) {
   PlanRequest request;
@@ -93,7 +88,7 @@ class BuildStepsTest : public ::testing::Test {
     const fs::path target = folder_ / "at_once.surf";
     const Result<BuildReport> report = build_model(inputs(), target, options, kSilent);
     EXPECT_TRUE(report) << report.error().message;
-    return bytes_in(target);
+    return testing::file_content(target);
   }
   [[nodiscard]] std::string built_at_once(size_t parts) const {
     BuildOptions options;
@@ -115,8 +110,8 @@ INSTANTIATE_TEST_SUITE_P(Parts, PartCountTest, ::testing::Values(1, 4, 16));
 
 TEST_P(PartCountTest, StepsInAnyOrderGiveTheBytesOfOneBuild) {
   make_all(GetParam());
-  EXPECT_EQ(bytes_in(work_ / "parts"), std::to_string(GetParam()) + "\n");
-  const std::string model = bytes_in(model_);
+  EXPECT_EQ(testing::file_content(work_ / "parts"), std::to_string(GetParam()) + "\n");
+  const std::string model = testing::file_content(model_);
   EXPECT_FALSE(model.empty());
   EXPECT_TRUE(model == built_at_once(GetParam()));
 }
@@ -131,7 +126,7 @@ TEST_P(PartCountTest, WhatAKilledStepLeavesChangesNothing) {
   }
   std::ofstream(work_ / "signs") << "half";
   make_all(GetParam());
-  EXPECT_TRUE(bytes_in(model_) == built_at_once(GetParam()));
+  EXPECT_TRUE(testing::file_content(model_) == built_at_once(GetParam()));
 }
 
 TEST_F(BuildStepsTest, APlanByMemoryHasThePartsOfABuild) {
@@ -140,7 +135,7 @@ TEST_F(BuildStepsTest, APlanByMemoryHasThePartsOfABuild) {
   EXPECT_EQ(planned->parts, 1U);
   EXPECT_FALSE(planned->done_before);
   make_all(1);
-  EXPECT_TRUE(bytes_in(model_) == built_at_once(BuildOptions{}));
+  EXPECT_TRUE(testing::file_content(model_) == built_at_once(BuildOptions{}));
 }
 
 TEST_F(BuildStepsTest, OptionsReachTheModel) {
@@ -157,7 +152,7 @@ TEST_F(BuildStepsTest, OptionsReachTheModel) {
   options.radii = request.radii;
   options.selection = request.selection;
   options.parts = request.parts;
-  EXPECT_TRUE(bytes_in(model_) == built_at_once(options));
+  EXPECT_TRUE(testing::file_content(model_) == built_at_once(options));
 }
 
 TEST_F(BuildStepsTest, ScansThatMoveIntoAnotherSystemComeToTheSamePlace) {
@@ -174,7 +169,7 @@ TEST_F(BuildStepsTest, ScansThatMoveIntoAnotherSystemComeToTheSamePlace) {
   BuildOptions options;
   options.systems = request.systems;
   options.parts = 4;
-  EXPECT_TRUE(bytes_in(model_) == built_at_once(options));
+  EXPECT_TRUE(testing::file_content(model_) == built_at_once(options));
 }
 
 TEST_F(BuildStepsTest, StatedRadiiAreDecidedForAllParts) {
@@ -192,7 +187,7 @@ TEST_F(BuildStepsTest, StatedRadiiAreDecidedForAllParts) {
   EXPECT_EQ(signs->radii.size(), 2U);
   make_blocks(7);
   ASSERT_TRUE(merge_parts(place_, model_, kSilent));
-  EXPECT_TRUE(bytes_in(model_) == built_at_once(7));
+  EXPECT_TRUE(testing::file_content(model_) == built_at_once(7));
 }
 
 TEST_F(BuildStepsTest, AStepThatWasDoneIsNotRepeated) {
@@ -209,7 +204,7 @@ TEST_F(BuildStepsTest, AStepThatWasDoneIsNotRepeated) {
 
 TEST_F(BuildStepsTest, APartIsNotNeededAnyMoreOnceItsBlocksAreThere) {
   make_all(4);
-  const std::string model = bytes_in(model_);
+  const std::string model = testing::file_content(model_);
   for (const size_t part : {1, 2, 3, 4}) fs::remove(work_ / ("part-" + std::to_string(part)));
   fs::remove(work_ / "blocks-2");
   EXPECT_TRUE(build_part(place_, 1, kSilent)->done_before);
@@ -218,23 +213,23 @@ TEST_F(BuildStepsTest, APartIsNotNeededAnyMoreOnceItsBlocksAreThere) {
   make_blocks(4);
   fs::remove(model_);
   ASSERT_TRUE(merge_parts(place_, model_, kSilent));
-  EXPECT_TRUE(bytes_in(model_) == model);
+  EXPECT_TRUE(testing::file_content(model_) == model);
 }
 
 TEST_F(BuildStepsTest, WithoutSignsAllPartsAreNeededAgain) {
   make_all(4);
-  const std::string model = bytes_in(model_);
+  const std::string model = testing::file_content(model_);
   for (const size_t part : {1, 2, 3, 4}) fs::remove(work_ / ("part-" + std::to_string(part)));
   fs::remove(work_ / "signs");
   fs::remove(model_);
   make_planned(4);
-  EXPECT_TRUE(bytes_in(model_) == model);
+  EXPECT_TRUE(testing::file_content(model_) == model);
 }
 
 TEST_F(BuildStepsTest, ADamagedResultIsMadeAgain) {
   make_all(4);
-  const std::string model = bytes_in(model_);
-  std::string changed = bytes_in(work_ / "blocks-2");
+  const std::string model = testing::file_content(model_);
+  std::string changed = testing::file_content(work_ / "blocks-2");
   changed[changed.size() / 3] ^= 1;
   std::ofstream(work_ / "blocks-2", std::ios::binary) << changed;
   fs::remove(model_);
@@ -242,7 +237,7 @@ TEST_F(BuildStepsTest, ADamagedResultIsMadeAgain) {
   EXPECT_FALSE(fs::exists(model_));
   EXPECT_FALSE(build_part_blocks(place_, 2, kSilent)->done_before);
   ASSERT_TRUE(merge_parts(place_, model_, kSilent));
-  EXPECT_TRUE(bytes_in(model_) == model);
+  EXPECT_TRUE(testing::file_content(model_) == model);
 }
 
 TEST_F(BuildStepsTest, AModelThatIsGoneIsMergedAgain) {
@@ -301,7 +296,7 @@ TEST_F(BuildStepsTest, ResultsOfAnotherPlanAreRefusedByName) {
   BuildOptions options;
   options.parts = 4;
   options.precision = 0.01;
-  EXPECT_TRUE(bytes_in(model_) == built_at_once(options));
+  EXPECT_TRUE(testing::file_content(model_) == built_at_once(options));
 }
 
 TEST_F(BuildStepsTest, APlanOfAnotherProgramIsRefused) {
@@ -311,7 +306,7 @@ TEST_F(BuildStepsTest, APlanOfAnotherProgramIsRefused) {
 
 TEST_F(BuildStepsTest, ADamagedPlanIsRefused) {
   ASSERT_TRUE(plan(4));
-  std::string text = bytes_in(work_ / "plan");
+  std::string text = testing::file_content(work_ / "plan");
   const size_t at = text.find("\"points_read\": ") + 15;
   text[at] = text[at] == '9' ? '8' : '9';
   std::ofstream(work_ / "plan") << text;

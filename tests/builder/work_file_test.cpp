@@ -1,13 +1,13 @@
 #include "builder/work_file.h"
 
 #include <fstream>
-#include <iterator>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "model/test_folder.h"
+#include "support/file_content.h"
 
 namespace surfcast::builder {
 namespace {
@@ -29,11 +29,6 @@ std::vector<std::byte> random_bytes(size_t size) {
   std::vector<std::byte> bytes(size);
   for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
   return bytes;
-}
-
-std::string content_of(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 void put_content(const fs::path& path, const std::string& content) {
@@ -87,7 +82,7 @@ TEST_F(WorkFileTest, SectionsAreCompressedWhereThatMakesThemSmaller) {
 
 TEST_F(WorkFileTest, EveryChangedByteIsNoticed) {
   write({counting_bytes(1000), random_bytes(40), counting_bytes(3)});
-  const std::string whole = content_of(path_);
+  const std::string whole = testing::file_content(path_);
   ASSERT_TRUE(is_whole());
   for (size_t i = 0; i < whole.size(); ++i) {
     std::string changed = whole;
@@ -99,7 +94,7 @@ TEST_F(WorkFileTest, EveryChangedByteIsNoticed) {
 
 TEST_F(WorkFileTest, EveryLengthButItsOwnIsNoticed) {
   write({counting_bytes(1000), random_bytes(40), counting_bytes(3)});
-  const std::string whole = content_of(path_);
+  const std::string whole = testing::file_content(path_);
   for (size_t size = 0; size < whole.size(); ++size) {
     put_content(path_, whole.substr(0, size));
     EXPECT_FALSE(is_whole()) << size;
@@ -110,7 +105,7 @@ TEST_F(WorkFileTest, EveryLengthButItsOwnIsNoticed) {
 
 TEST_F(WorkFileTest, DamageOfASectionIsAnErrorOfThatSection) {
   write({random_bytes(3 << 20), counting_bytes(9)});
-  std::string changed = content_of(path_);
+  std::string changed = testing::file_content(path_);
   changed[(2 << 20) + 5] ^= 1;
   put_content(path_, changed);
   const Result<WorkFile> file = WorkFile::open(path_, owner_);

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -12,16 +11,12 @@
 #include "ellipsoid/tensor_fields.h"
 #include "model/model_file.h"
 #include "model/test_folder.h"
+#include "support/file_content.h"
 
 namespace surfcast::builder {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 class BuildEllipsoidsTest : public ::testing::Test {
  protected:
@@ -84,9 +79,9 @@ TEST_F(BuildEllipsoidsTest, TheModelDependsNeitherOnThreadsNorOnMemory) {
   ASSERT_TRUE(build({field}, "b.surf", small));
   const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
   ASSERT_TRUE(build({field}, "c.surf"));
-  const std::string bytes = bytes_of(folder_ / "a.surf");
-  EXPECT_TRUE(bytes == bytes_of(folder_ / "b.surf"));
-  EXPECT_TRUE(bytes == bytes_of(folder_ / "c.surf"));
+  const std::string bytes = testing::file_content(folder_ / "a.surf");
+  EXPECT_TRUE(bytes == testing::file_content(folder_ / "b.surf"));
+  EXPECT_TRUE(bytes == testing::file_content(folder_ / "c.surf"));
 }
 
 TEST_F(BuildEllipsoidsTest, FieldsAndTablesMakeOneModel) {

@@ -4,7 +4,6 @@
 #include <csignal>
 #include <fstream>
 #include <glm/geometric.hpp>
-#include <iterator>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -17,6 +16,7 @@
 #include "scan/las_file.h"
 #include "scan/las_records.h"
 #include "scan/whole_scan.h"
+#include "support/file_content.h"
 #include "support/path_of.h"
 
 namespace surfcast::exporter {
@@ -26,11 +26,6 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::LasFile;
-
-std::string text_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class ExportScanTest : public ::testing::Test {
  protected:
@@ -118,7 +113,7 @@ TEST_P(ExportFormatTest, RecordsOfLasComeBackByteByByteFromLasAndLaz) {
     EXPECT_EQ(scan->schema().crs, "PROJCS[\"somewhere\"]");
     EXPECT_EQ(scan->schema().grid->scale, glm::dvec3(0.01, 0.01, 0.25));
     EXPECT_EQ(scan->schema().grid->offset.x, 500000);
-    EXPECT_THAT(text_of(place(name)), HasSubstr("something of theirs"));
+    EXPECT_THAT(testing::file_content(place(name)), HasSubstr("something of theirs"));
   }
 }
 
@@ -126,7 +121,7 @@ TEST_P(ExportFormatTest, TheHeaderStatesCountsReturnsAndBoundsOfWhatIsThere) {
   const LasFile file = sample_file(GetParam(), 100);
   const fs::path source = write("scan.las", file.text());
   ASSERT_TRUE(export_scan(source, place("out.laz"), {}));
-  const std::string out = text_of(place("out.laz"));
+  const std::string out = testing::file_content(place("out.laz"));
   const auto bytes = testing::as_bytes(out);
   const bool legacy = GetParam() < 6;
   uint64_t returns[15] = {};
@@ -292,7 +287,7 @@ TEST_F(ExportScanTest, ADiskThatIsFullIsOneLineAndLeavesTheFileThatWasThere) {
     ASSERT_FALSE(report) << name;
     EXPECT_EQ(report.error().kind, ErrorKind::kIo);
     EXPECT_THAT(report.error().message, HasSubstr(place(name).string() + ": cannot write"));
-    EXPECT_EQ(text_of(place(name)), "what was there");
+    EXPECT_EQ(testing::file_content(place(name)), "what was there");
   }
   EXPECT_EQ(files().size(), 6U);
 }

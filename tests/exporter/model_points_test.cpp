@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 
@@ -17,6 +15,7 @@
 #include "model/write_model.h"
 #include "scan/whole_scan.h"
 #include "support/clouds.h"
+#include "support/file_content.h"
 
 namespace surfcast::exporter {
 namespace {
@@ -175,11 +174,6 @@ TEST_F(ModelPointsTest, WithoutAClassificationClassesAreAnError) {
   EXPECT_EQ(points.error().message, "scan: has no classification to choose points by");
 }
 
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST_F(ModelPointsTest, ComeOutOfAModelInEveryFormat) {
   const surfel::SurfelCloud cloud = survey();
   const fs::path source = write(cloud);
@@ -214,7 +208,7 @@ TEST_F(ModelPointsTest, ComeOutOfAModelInEveryFormat) {
 TEST_F(ModelPointsTest, ComeOutAsAnArrayOfNumPy) {
   const surfel::SurfelCloud cloud = survey();
   ASSERT_TRUE(export_scan(write(cloud), place("out.npy"), {}));
-  const std::string file = content_of(place("out.npy"));
+  const std::string file = testing::file_content(place("out.npy"));
   EXPECT_THAT(file, StartsWith(std::string("\x93NUMPY\x01\0", 8)));
   const size_t head = 10 + static_cast<uint8_t>(file[8]) + 256 * static_cast<uint8_t>(file[9]);
   EXPECT_EQ(head % 64, 0U);
@@ -230,7 +224,8 @@ TEST_F(ModelPointsTest, HeadsOfLasStateWhatTheirPointsHave) {
   options.selection.zone.boxes = {{kUtm.offset - 20.0, kUtm.offset + 20.0}};
   ASSERT_TRUE(export_scan(source, place("of_model.las"), options));
   ASSERT_TRUE(export_scan(place("of_model.las"), place("copy.las"), {}));
-  EXPECT_EQ(content_of(place("of_model.las")), content_of(place("copy.las"))) << "counts, returns and bounds";
+  EXPECT_EQ(testing::file_content(place("of_model.las")), testing::file_content(place("copy.las")))
+      << "counts, returns and bounds";
 }
 
 TEST_F(ModelPointsTest, OfAnEmptyRegionAreFilesWithoutPointsForWhomWantsThem) {

@@ -1,5 +1,3 @@
-#include <fstream>
-#include <iterator>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -13,16 +11,12 @@
 #include "gaussian/gaussian_scenes.h"
 #include "gaussian/merge_gaussians.h"
 #include "model/test_folder.h"
+#include "support/file_content.h"
 
 namespace surfcast::builder {
 namespace {
 
 using testing::ModelPointer;
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Gaussians of a sphere and within it, more than a block holds.
 reference::GaussianModel many(int count) {
@@ -109,8 +103,8 @@ TEST(BuildGaussiansTest, TheFileDependsNeitherOnThreadsNorOnMemory) {
     ASSERT_TRUE(testing::build_and_open(ply, folder / "one.surf"));
   }
   ASSERT_TRUE(testing::build_and_open(ply, folder / "little.surf", uint64_t{4} << 20));
-  EXPECT_EQ(bytes_of(folder / "one.surf"), bytes_of(folder / "expected.surf"));
-  EXPECT_EQ(bytes_of(folder / "little.surf"), bytes_of(folder / "expected.surf"));
+  EXPECT_EQ(testing::file_content(folder / "one.surf"), testing::file_content(folder / "expected.surf"));
+  EXPECT_EQ(testing::file_content(folder / "little.surf"), testing::file_content(folder / "expected.surf"));
 }
 
 TEST(BuildGaussiansTest, APreviewHasAWidenedSampleFromAllPartsOfTheInput) {

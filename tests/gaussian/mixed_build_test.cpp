@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "gaussian/gaussian_files.h"
 #include "gaussian/gaussian_scenes.h"
 #include "model/test_folder.h"
+#include "support/file_content.h"
 
 namespace surfcast::builder {
 namespace {
@@ -125,11 +125,7 @@ TEST_F(MixedBuildTest, TheTablesStateAllKindsAndSources) {
 TEST_F(MixedBuildTest, TheOrderOfTheInputsDoesNotMatter) {
   ASSERT_TRUE(build({splats_, grid_, scan_}, folder_ / "a.surf"));
   ASSERT_TRUE(build({scan_, splats_, grid_}, folder_ / "b.surf"));
-  const auto bytes = [](const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return std::string{std::istreambuf_iterator<char>(file), {}};
-  };
-  EXPECT_EQ(bytes(folder_ / "a.surf"), bytes(folder_ / "b.surf"));
+  EXPECT_EQ(testing::file_content(folder_ / "a.surf"), testing::file_content(folder_ / "b.surf"));
 }
 
 TEST_F(MixedBuildTest, AScanWithoutColoursStaysWithoutThem) {

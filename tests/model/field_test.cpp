@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint64_t kMax = std::numeric_limits<uint64_t>::max();
 
-std::vector<Field> round_trip(const std::vector<Field>& fields) {
+std::vector<Field> decoded_again(const std::vector<Field>& fields) {
   std::vector<size_t> columns;
   for (const Field& field : fields) columns.push_back(field.size());
   const auto rows = static_cast<uint32_t>(fields.front().front().size());
@@ -48,18 +48,18 @@ TEST(Field, ValuesOfEveryWidthComeBackInOrder) {
     for (int i = 0; i < 50; ++i) column.push_back(bits == 0 ? 99 : random() >> (64 - bits));
     fields.push_back({column});
   }
-  EXPECT_EQ(round_trip(fields), fields);
+  EXPECT_EQ(decoded_again(fields), fields);
 }
 
 TEST(Field, ColumnsOfOneFieldMayDifferInRange) {
   const std::vector<Field> fields{{{1, 2, 3}, {kMax, 0, 5}, {8, 8, 8}}, {{4, 4, 4}}};
-  EXPECT_EQ(round_trip(fields), fields);
+  EXPECT_EQ(decoded_again(fields), fields);
 }
 
 TEST(Field, AllConstantColumnsNeedNoDracoData) {
   const std::vector<Field> fields{{Column(1000, 5), Column(1000, kMax)}};
   EXPECT_LT(encode_fields(fields).size(), 20u);
-  EXPECT_EQ(round_trip(fields), fields);
+  EXPECT_EQ(decoded_again(fields), fields);
 }
 
 TEST(Field, RandomValuesOfAnyWidthAreNotTooLongToBeRead) {
@@ -73,7 +73,7 @@ TEST(Field, RandomValuesOfAnyWidthAreNotTooLongToBeRead) {
       }
       fields.push_back(field);
     }
-    EXPECT_EQ(round_trip(fields), fields) << rows;
+    EXPECT_EQ(decoded_again(fields), fields) << rows;
   }
 }
 

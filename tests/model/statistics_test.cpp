@@ -138,7 +138,7 @@ Directory tables() {
   return directory;
 }
 
-Result<Directory> reread(const Directory& directory, size_t left_out = 0) {
+Result<Directory> reread_tables(const Directory& directory, size_t left_out = 0) {
   std::vector<std::byte> bytes = write_directory(directory);
   bytes.resize(bytes.size() - left_out);
   ModelHeader header;
@@ -148,7 +148,7 @@ Result<Directory> reread(const Directory& directory, size_t left_out = 0) {
 }
 
 TEST(StatisticsInFiles, ComeBack) {
-  const Result<Directory> read = reread(tables());
+  const Result<Directory> read = reread_tables(tables());
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->ranges.size(), 1u);
   EXPECT_EQ(read->ranges[0].attribute, "intensity");
@@ -164,9 +164,9 @@ TEST(StatisticsInFiles, AFileMayEndWithoutThemButNotWithin) {
   without.classes.clear();
   const size_t statistics = all - write_directory(without).size() + 8;
   for (size_t left_out = 1; left_out < statistics; ++left_out) {
-    EXPECT_FALSE(reread(tables(), left_out)) << left_out;
+    EXPECT_FALSE(reread_tables(tables(), left_out)) << left_out;
   }
-  const Result<Directory> old = reread(tables(), statistics);
+  const Result<Directory> old = reread_tables(tables(), statistics);
   ASSERT_TRUE(old) << old.error().message;
   EXPECT_TRUE(old->ranges.empty() && old->classes.empty());
 }
@@ -176,7 +176,7 @@ TEST(StatisticsInFiles, HostileOnesAreRefused) {
   const auto refused = [](auto spoil) {
     Directory directory = tables();
     spoil(directory);
-    return !reread(directory);
+    return !reread_tables(directory);
   };
   EXPECT_TRUE(refused([](Directory& d) { d.ranges[0].attribute = "other"; }));
   EXPECT_TRUE(refused([](Directory& d) { d.ranges[0].smallest = 3; }));

@@ -13,6 +13,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "support/file_content.h"
+
 namespace surfcast::protocol {
 namespace {
 
@@ -45,10 +47,6 @@ class FilmTest : public ::testing::Test {
   void have_copying_encoder() const {
     have_encoder("for last; do :; done; echo \"$@\" > '" + (folder_ / "arguments").string() + "'; cat > \"$last\"");
   }
-  static std::string content(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   [[nodiscard]] size_t files() const {
     return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
@@ -72,9 +70,9 @@ TEST_F(FilmTest, TheEncoderGetsEveryPicture) {
   EXPECT_TRUE(film->append(large));
   EXPECT_FALSE(fs::exists(target)) << "it is not whole";
   ASSERT_TRUE(film->finish());
-  EXPECT_EQ(content(target), "first" + large);
-  EXPECT_THAT(content(folder_ / "arguments"), HasSubstr("-framerate 24 "));
-  EXPECT_THAT(content(folder_ / "arguments"), HasSubstr("libx264"));
+  EXPECT_EQ(testing::file_content(target), "first" + large);
+  EXPECT_THAT(testing::file_content(folder_ / "arguments"), HasSubstr("-framerate 24 "));
+  EXPECT_THAT(testing::file_content(folder_ / "arguments"), HasSubstr("libx264"));
 }
 
 TEST_F(FilmTest, TheNameChoosesTheCodec) {
@@ -82,8 +80,8 @@ TEST_F(FilmTest, TheNameChoosesTheCodec) {
   auto film = FilmWriter::create(folder_ / "film.webm", 0.5);
   ASSERT_TRUE(film);
   ASSERT_TRUE(film->finish());
-  EXPECT_THAT(content(folder_ / "arguments"), HasSubstr("libvpx-vp9"));
-  EXPECT_THAT(content(folder_ / "arguments"), HasSubstr("-framerate 0.5 "));
+  EXPECT_THAT(testing::file_content(folder_ / "arguments"), HasSubstr("libvpx-vp9"));
+  EXPECT_THAT(testing::file_content(folder_ / "arguments"), HasSubstr("-framerate 0.5 "));
 }
 
 TEST_F(FilmTest, AnEncoderThatFailsIsQuotedAndLeavesNothing) {

@@ -9,13 +9,10 @@
 #include <random>
 
 #include "base/contract.h"
+#include "reference/infinity.h"
 
 namespace surfcast::reference {
 namespace {
-
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// Random splats of generated models.
 class SplatMaker {

@@ -15,13 +15,13 @@ namespace surfcast::reference {
 namespace {
 
 constexpr int kTrainedTile = 16;    ///< pixels
-constexpr int kTile = 8;            ///< of exact pictures, pixels
+constexpr int kGaussianTile = 8;    ///< of exact pictures, pixels
 constexpr int kBorder = 5;          ///< pixels about an exact picture in which there may be rays
 constexpr double kMinSpread = 0.1;  ///< square pixels, of the larger axis' squared distance from the mean
 constexpr double kReach = 3;        ///< of a splat as trained, deviations
 constexpr double kDiscScreen = 2;   ///< inverse variance of a disc's smallest footprint (Huang 2024), 1 / px^2
 
-struct Fragment {
+struct GaussianFragment {
   double depth = 0;
   double alpha = 0;
   glm::dvec3 color{0};
@@ -159,13 +159,13 @@ struct ExactSplat {
 class ExactScene {
  public:
   ExactScene(const GaussianModel& model, const geometry::CameraFrame& frame, const ExactRules& rules)
-      : frame_(frame), rules_(rules), lists_(frame.width + 2 * kBorder, frame.height + 2 * kBorder, kTile) {
+      : frame_(frame), rules_(rules), lists_(frame.width + 2 * kBorder, frame.height + 2 * kBorder, kGaussianTile) {
     for (const GaussianSplat& splat : model.splats) add(splat, model.degree);
   }
 
   [[nodiscard]] glm::dvec4 light(const glm::dvec2& pixel) const {
     const glm::dvec3 d = frame_.ray(pixel);
-    std::vector<Fragment> fragments;
+    std::vector<GaussianFragment> fragments;
     for (const size_t i : lists_.at(pixel + static_cast<double>(kBorder))) {
       const KernelOnRay seen = splats_[i].shape.on_ray(d);
       if (!(seen.r2 <= rules_.cutoff)) continue;
@@ -174,9 +174,9 @@ class ExactScene {
       fragments.push_back({depth, alpha, splats_[i].color});
     }
     std::stable_sort(fragments.begin(), fragments.end(),
-                     [](const Fragment& a, const Fragment& b) { return a.depth < b.depth; });
+                     [](const GaussianFragment& a, const GaussianFragment& b) { return a.depth < b.depth; });
     RayLight ray;
-    for (const Fragment& fragment : fragments) ray.add_surface(fragment.color, fragment.alpha);
+    for (const GaussianFragment& fragment : fragments) ray.add_surface(fragment.color, fragment.alpha);
     return ray.premultiplied();
   }
 
@@ -195,7 +195,7 @@ class ExactScene {
     const auto bounds = shape.bounds(rules_.cutoff);
     if (!bounds) return lists_.everywhere();
     const auto tile = [](double pixel) {
-      return static_cast<int>(std::floor(std::clamp((pixel + kBorder) / kTile, -1.0, 1e6)));
+      return static_cast<int>(std::floor(std::clamp((pixel + kBorder) / kGaussianTile, -1.0, 1e6)));
     };
     return {tile(0.5 * frame_.width + frame_.eta * bounds->min.x),
             tile(0.5 * frame_.height - frame_.eta * bounds->max.y),

@@ -8,14 +8,6 @@
 #include "reference/infinity.h"
 
 namespace surfcast::reference {
-namespace {
-
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-}  // namespace
-
 std::optional<Splat> Splat::make(const glm::dvec3& o, const glm::dvec3& n, double radius, double eta, double prefilter,
                                  const KernelParameters& kernel) {
   const bool valid = finite(o) && finite(n) && glm::dot(n, n) > 0.5 && radius > 0 && std::isfinite(radius);

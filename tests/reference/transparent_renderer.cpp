@@ -16,9 +16,9 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kTile = 8;                        ///< pixels
-constexpr double kMaxOpacity = 1 - 1.0 / 4096;  ///< of a fragment of a medium: its optical depth is finite
-constexpr double kOpaque = 1.0 / 128;           ///< transmittance below which nothing is visible
+constexpr int kTransparentTile = 8;                ///< pixels
+constexpr double kMaxOpacity = 1 - 1.0 / 4096;     ///< of a fragment of a medium: its optical depth is finite
+constexpr double kLeastTransmittance = 1.0 / 128;  ///< transmittance below which nothing is visible
 
 struct SeenSurfel {
   Splat splat;
@@ -101,7 +101,7 @@ class Ray {
       if (next.last) break;
     }
     composite(waiting);
-    if (transmittance_ > kOpaque) draw_medium(limit);
+    if (transmittance_ > kLeastTransmittance) draw_medium(limit);
   }
 
   /// Everything behind `limit`, without order.
@@ -169,7 +169,7 @@ class Ray {
 
   /// True if something is to be seen behind the surface that waits.
   [[nodiscard]] bool is_open(const Surface& waiting) const {
-    return transmittance_ * (1 - opacity_of(waiting)) > kOpaque;
+    return transmittance_ * (1 - opacity_of(waiting)) > kLeastTransmittance;
   }
 
   /// False if there is nothing to be seen.
@@ -206,7 +206,9 @@ class Scene {
  public:
   Scene(const surfel::SurfelCloud& cloud, const std::vector<double>& opacities, const geometry::CameraFrame& frame,
         bool per_surfel, const KernelParameters& kernel, const TransparencyParameters& parameters)
-      : frame_(frame), columns_((frame.width + kTile - 1) / kTile), rows_((frame.height + kTile - 1) / kTile) {
+      : frame_(frame),
+        columns_((frame.width + kTransparentTile - 1) / kTransparentTile),
+        rows_((frame.height + kTransparentTile - 1) / kTransparentTile) {
     SURFCAST_EXPECTS(opacities.size() == cloud.size());
     tiles_.resize(static_cast<size_t>(columns_) * rows_);
     for (size_t i = 0; i < cloud.size(); ++i) {
@@ -216,7 +218,7 @@ class Scene {
 
   [[nodiscard]] const std::vector<SeenSurfel>& surfels() const { return surfels_; }
   [[nodiscard]] const std::vector<uint32_t>& tile_of(int x, int y) const {
-    return tiles_[static_cast<size_t>(y / kTile) * columns_ + x / kTile];
+    return tiles_[static_cast<size_t>(y / kTransparentTile) * columns_ + x / kTransparentTile];
   }
 
  private:
@@ -240,7 +242,7 @@ class Scene {
 
   void bin(const Splat::Bounds& b) {
     const auto tile = [](double pixel, int count) {
-      return static_cast<int>(std::clamp(std::floor(pixel / kTile), 0.0, count - 1.0));
+      return static_cast<int>(std::clamp(std::floor(pixel / kTransparentTile), 0.0, count - 1.0));
     };
     const auto column = [&](double x) { return 0.5 * frame_.width + frame_.eta * x; };
     const auto row = [&](double y) { return 0.5 * frame_.height - frame_.eta * y; };

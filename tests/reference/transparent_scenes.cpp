@@ -20,10 +20,10 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kSize = 256;        ///< pixels
-constexpr int kSide = 128;        ///< samples along a side of a square
-constexpr int kSamples = 40'000;  ///< of a sphere
-constexpr int kReach = 4;         ///< of the pixel filter, pixels
+constexpr int kTransparentSize = 256;   ///< pixels
+constexpr int kSide = 128;              ///< samples along a side of a square
+constexpr int kSphereSamples = 40'000;  ///< of a sphere
+constexpr int kPixelFilterReach = 4;    ///< of the pixel filter, pixels
 
 /// A sheet in coordinates of its own, in which it is the square or the unit sphere about the origin.
 struct Sheet {
@@ -81,7 +81,7 @@ Sheet sphere(double radius, size_t color, double opacity) {
 
 void append(const Sheet& sheet, uint32_t seed, TransparentScene& scene) {
   const std::vector<SurfacePoint> points =
-      sheet.ball ? jittered_sphere(kSamples, 0.25, seed) : jittered_square(sheet.side, 0.25, seed);
+      sheet.ball ? jittered_sphere(kSphereSamples, 0.25, seed) : jittered_square(sheet.side, 0.25, seed);
   const surfel::SurfelCloud own = surfels_at(points);
   const surfel::ColorAttribute colors = sampled_colors(points, sheet.color);
   std::mt19937 random(seed + 100);
@@ -141,8 +141,8 @@ TransparentScene scene_of(const std::vector<Sheet>& sheets, double distance, dou
   camera.view_up = {0, 0, 1};
   camera.view_angle = view_angle;
   scene.request.camera = camera;
-  scene.request.width = kSize;
-  scene.request.height = kSize;
+  scene.request.width = kTransparentSize;
+  scene.request.height = kTransparentSize;
   scene.request.background = {255, 255, 255};
   return scene;
 }
@@ -199,12 +199,12 @@ TransparentScene glass_shell() {
   return scene_of({sphere(0.8, 1, 0.3), wall}, 4, 20);
 }
 
-struct NamedScene {
+struct NamedTransparentScene {
   const char* name;
   TransparentScene (*make)();
 };
 
-constexpr NamedScene kScenes[] = {
+constexpr NamedTransparentScene kTransparentScenes[] = {
     {"planes", [] { return planes(0); }},
     {"planes_noise_quarter", [] { return planes(0.25); }},
     {"planes_noise_half", [] { return planes(0.5); }},
@@ -230,14 +230,14 @@ auto along_ray(const geometry::CameraFrame& frame, const glm::dvec2& pixel, cons
 
 std::vector<std::string> transparent_scene_names() {
   std::vector<std::string> names;
-  for (const NamedScene& scene : kScenes) names.emplace_back(scene.name);
+  for (const NamedTransparentScene& scene : kTransparentScenes) names.emplace_back(scene.name);
   return names;
 }
 
 TransparentScene make_transparent_scene(const std::string& name) {
-  const auto* found =
-      std::find_if(std::begin(kScenes), std::end(kScenes), [&](const auto& s) { return s.name == name; });
-  SURFCAST_EXPECTS(found != std::end(kScenes));
+  const auto* found = std::find_if(std::begin(kTransparentScenes), std::end(kTransparentScenes),
+                                   [&](const auto& s) { return s.name == name; });
+  SURFCAST_EXPECTS(found != std::end(kTransparentScenes));
   TransparentScene scene = found->make();
   scene.name = name;
   return scene;
@@ -271,8 +271,9 @@ std::vector<bool> inside(const TransparentScene& scene) {
     for (int x = 0; x < frame->width; ++x) {
       const std::vector<int> here = sheets_at({x + 0.5, y + 0.5});
       bool same = !here.empty();
-      for (int v = -kReach; same && v <= kReach; ++v) {
-        for (int u = -kReach; same && u <= kReach; ++u) same = sheets_at({x + u + 0.5, y + v + 0.5}) == here;
+      for (int v = -kPixelFilterReach; same && v <= kPixelFilterReach; ++v) {
+        for (int u = -kPixelFilterReach; same && u <= kPixelFilterReach; ++u)
+          same = sheets_at({x + u + 0.5, y + v + 0.5}) == here;
       }
       mask.push_back(same);
     }

@@ -102,33 +102,36 @@ TEST(PcdReaderTest, ViewpointIsTheSensor) {
   EXPECT_EQ(points->sensor, glm::dvec3(10, -2, 3));
 }
 
-std::string message_for(const std::string& text) {
+std::string pcd_message_for(const std::string& text) {
   const Result<testing::WholeScan> points = testing::read_whole(as_bytes(text), "scan.pcd");
   return points ? "" : points.error().message;
 }
 
 TEST(PcdReaderTest, BadHeadersAreNamed) {
-  EXPECT_THAT(message_for("VERSION .7\nFIELDS x y z\n"), HasSubstr("no DATA line"));
-  EXPECT_THAT(message_for("VERSION .7\nPOINTS 1\nDATA ascii\n"), HasSubstr("no FIELDS line"));
-  EXPECT_THAT(message_for("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n"), HasSubstr("differ in length"));
-  EXPECT_THAT(message_for("FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\nPOINTS 1\nDATA ascii\n"), HasSubstr("field z"));
-  EXPECT_THAT(message_for("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nDATA ascii\n"), HasSubstr("number of points"));
-  EXPECT_THAT(message_for("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 0\nDATA ascii\n"), HasSubstr("no points"));
-  EXPECT_THAT(message_for("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA zip\n"), HasSubstr("neither ascii"));
-  EXPECT_THAT(message_for("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 0 0 0\nPOINTS 1\nDATA binary\n"),
+  EXPECT_THAT(pcd_message_for("VERSION .7\nFIELDS x y z\n"), HasSubstr("no DATA line"));
+  EXPECT_THAT(pcd_message_for("VERSION .7\nPOINTS 1\nDATA ascii\n"), HasSubstr("no FIELDS line"));
+  EXPECT_THAT(pcd_message_for("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n"),
+              HasSubstr("differ in length"));
+  EXPECT_THAT(pcd_message_for("FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\nPOINTS 1\nDATA ascii\n"), HasSubstr("field z"));
+  EXPECT_THAT(pcd_message_for("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nDATA ascii\n"), HasSubstr("number of points"));
+  EXPECT_THAT(pcd_message_for("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 0\nDATA ascii\n"), HasSubstr("no points"));
+  EXPECT_THAT(pcd_message_for("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA zip\n"),
+              HasSubstr("neither ascii"));
+  EXPECT_THAT(pcd_message_for("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 0 0 0\nPOINTS 1\nDATA binary\n"),
               HasSubstr("no values"));
-  EXPECT_THAT(message_for("FIELDS a b c\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+  EXPECT_THAT(pcd_message_for("FIELDS a b c\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
               HasSubstr("x, y and z"));
 }
 
 TEST(PcdReaderTest, HugeCountsFailAtOnce) {
-  EXPECT_THAT(message_for(kXyz + "POINTS 18446744073709551615\nDATA binary\n" + std::string(40, 'a')),
+  EXPECT_THAT(pcd_message_for(kXyz + "POINTS 18446744073709551615\nDATA binary\n" + std::string(40, 'a')),
               HasSubstr("truncated"));
-  EXPECT_THAT(message_for(kXyz + "POINTS 1537228672809129302\nDATA binary\n" + std::string(40, 'a')),  // times 12 wraps
-              HasSubstr("truncated"));
+  EXPECT_THAT(
+      pcd_message_for(kXyz + "POINTS 1537228672809129302\nDATA binary\n" + std::string(40, 'a')),  // times 12 wraps
+      HasSubstr("truncated"));
   Bytes compressed(kXyz + "POINTS 300000000\nDATA binary_compressed\n");
   compressed.add<uint32_t>(4).add<uint32_t>(3600000000U).add_text("abcd");
-  EXPECT_THAT(message_for(compressed.text()), HasSubstr("damaged"));
+  EXPECT_THAT(pcd_message_for(compressed.text()), HasSubstr("damaged"));
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ model::ModelSchema schema_of(const Readers& readers, std::span<const std::filesy
   return schema;
 }
 
-size_t runs_of(const Readers& readers) {
+size_t run_count(const Readers& readers) {
   uint64_t runs = 0;
   for (const gaussian::GaussianReader& reader : readers) runs += (reader.traits().count + kRun - 1) / kRun;
   return static_cast<size_t>(std::max<uint64_t>(runs, 1));
@@ -128,7 +128,7 @@ Status build_gaussians(std::span<const std::filesystem::path> inputs, ModelOutpu
   Result<Readers> readers = open_readers(inputs, report.memory_budget);
   if (!readers) return fail(readers);
   if (Status status = check_alike(*readers, inputs); !status) return status;
-  clock.begin("reading", runs_of(*readers));
+  clock.begin("reading", run_count(*readers));
   for (const gaussian::GaussianReader& reader : *readers) report.points_in_scans += reader.traits().count;
   const Result<geometry::Box> box = survey(*readers, options.sample, clock, report);
   if (!box) return fail(box);
@@ -136,7 +136,7 @@ Status build_gaussians(std::span<const std::filesystem::path> inputs, ModelOutpu
     return fail(ErrorKind::kInvalidInput, output.target().string() + ": no usable Gaussian is left of the input");
   }
   clock.know_points(report.gaussians);
-  clock.begin("sorting", runs_of(*readers));
+  clock.begin("sorting", run_count(*readers));
   const geometry::RootCube root = geometry::root_cube(*box);
   const gaussian::GaussianTraits& traits = readers->front().traits();
   const int degree = degree_of(*readers);

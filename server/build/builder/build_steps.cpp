@@ -92,7 +92,7 @@ Status read_pieces(const BuildInputs& inputs, PieceSurvey& survey, StageClock& c
 }
 
 /// Divides the points, and finds the pieces that each part needs.
-Status divide(const BuildInputs& inputs, const Division& division, StageClock& clock, BuildPlan& plan) {
+Status divide_into_parts(const BuildInputs& inputs, const Division& division, StageClock& clock, BuildPlan& plan) {
   const geometry::RootCube root = geometry::root_cube(inputs.bounds());
   PieceSurvey survey(inputs.pieces());
   const SeePiece see = [&survey](size_t piece, const InputPiece& read, const estimation::SurfelReport& report) {
@@ -176,7 +176,7 @@ Result<PlanOutcome> make_plan(BuildPlan plan, const fs::path& folder, StageClock
   if (!memory) return fail(memory);
   clock.know_points(opened->size());
   for (size_t i = 0; i < paths.size(); ++i) plan.inputs[i].facts = opened->facts()[i];
-  if (Status status = divide(*opened, {*memory, request.parts}, clock, plan); !status) {
+  if (Status status = divide_into_parts(*opened, {*memory, request.parts}, clock, plan); !status) {
     return fail(status);
   }
   if (Status status = write_plan_files(folder, plan); !status) return fail(status);

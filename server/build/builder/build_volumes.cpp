@@ -14,16 +14,17 @@ namespace surfcast::builder {
 namespace {
 
 /// Memory beside the planes: the program, decoders of inputs and bricks in flight.
-constexpr double kReserve = 64.0 * 1024 * 1024;
+constexpr double kVolumeReserve = 64.0 * 1024 * 1024;
 
 Status check_memory(const std::vector<GridInput>& inputs, const std::filesystem::path& target, uint64_t budget) {
   constexpr double kMebibyte = 1024.0 * 1024;
   double most = 0;
   for (const GridInput& input : inputs) most = std::max(most, volume_bytes(input));
-  if (kReserve + most <= static_cast<double>(budget)) return {};
+  if (kVolumeReserve + most <= static_cast<double>(budget)) return {};
   const auto mebibytes = [](double bytes) { return std::to_string(std::llround(std::ceil(bytes / kMebibyte))) + "M"; };
   return fail(ErrorKind::kLimit, target.string() + ": a memory budget of " + mebibytes(static_cast<double>(budget)) +
-                                     " is too small for these grids: it takes at least " + mebibytes(kReserve + most));
+                                     " is too small for these grids: it takes at least " +
+                                     mebibytes(kVolumeReserve + most));
 }
 
 Result<std::vector<GridInput>> open_all(std::span<const std::filesystem::path> paths, std::optional<uint64_t> sample) {

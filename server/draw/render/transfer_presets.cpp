@@ -13,7 +13,7 @@ using picture::TransferPoint;
 using picture::TransferPreset;
 
 /// Values from 0 to 1 along the scale of the preset.
-constexpr TransferPoint kGray[] = {{0.05, {0, 0, 0}, 0}, {1, {1, 1, 1}, 0.2}};
+constexpr TransferPoint kGrayPoints[] = {{0.05, {0, 0, 0}, 0}, {1, {1, 1, 1}, 0.2}};
 constexpr TransferPoint kMr[] = {{0.12, {0.35, 0.2, 0.15}, 0},
                                  {0.25, {0.75, 0.5, 0.4}, 0.06},
                                  {0.5, {0.95, 0.8, 0.65}, 0.15},
@@ -48,7 +48,7 @@ std::span<const TransferPoint> points_of(TransferPreset preset) {
     case TransferPreset::kGray:
       break;
   }
-  return kGray;
+  return kGrayPoints;
 }
 
 struct Scale {

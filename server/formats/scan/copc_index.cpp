@@ -14,9 +14,9 @@ namespace surfcast::scan {
 namespace {
 
 constexpr size_t kRecordBytes = 160;
-constexpr size_t kEntryBytes = 32;
+constexpr size_t kCopcEntryBytes = 32;
 /// Deeper than an octree of 32 bit coordinates can be.
-constexpr int32_t kDeepest = 31;
+constexpr int32_t kDeepestCopc = 31;
 
 /// An entry of a page: a node, or (points -1) a page with the node and what is below it.
 struct Entry {
@@ -69,7 +69,8 @@ class HierarchyWalk {
     if (page.offset > file_.size() || page.size > file_.size() - page.offset) {
       return invalid_input("truncated: a page of the COPC hierarchy lies beyond the end of the file");
     }
-    if (page.size % kEntryBytes != 0) return invalid_input("a page of the COPC hierarchy has a size that cannot be");
+    if (page.size % kCopcEntryBytes != 0)
+      return invalid_input("a page of the COPC hierarchy has a size that cannot be");
     if (!seen_.insert(page.offset).second) return invalid_input("a page of the COPC hierarchy is within itself");
     nodes_.page_bytes += page.size;
     if (nodes_.page_bytes > file_.size()) return invalid_input("pages of the COPC hierarchy overlap");
@@ -81,14 +82,14 @@ class HierarchyWalk {
   Status read(const ByteRange& page) {
     std::vector<std::byte> bytes(page.size);
     if (Status status = file_.read(page.offset, bytes); !status) return status;
-    for (size_t at = 0; at < bytes.size(); at += kEntryBytes) {
+    for (size_t at = 0; at < bytes.size(); at += kCopcEntryBytes) {
       if (Status status = take(load_entry(&bytes[at])); !status) return status;
     }
     return {};
   }
 
   Status take(const Entry& entry) {
-    const bool sound = entry.level >= 0 && entry.level <= kDeepest && entry.points >= -1 && entry.bytes >= 0;
+    const bool sound = entry.level >= 0 && entry.level <= kDeepestCopc && entry.points >= -1 && entry.bytes >= 0;
     if (!sound || ((entry.place.x | entry.place.y | entry.place.z) >> entry.level) != 0) {
       return invalid_input("an entry of the COPC hierarchy is damaged");
     }

@@ -149,11 +149,11 @@ PointTable binary_table(const EptDescription& ept, std::vector<std::byte> record
 }
 
 /// More than Zstandard makes of a byte: blocks of 128 KiB that repeat one byte take four.
-constexpr uint64_t kMaxExpansion = 65536;
+constexpr uint64_t kMaxTileExpansion = 65536;
 
 /// Frames do not state their size: they must give exactly that many bytes.
 Result<std::vector<std::byte>> decompress(std::span<const std::byte> tile, uint64_t bytes) {
-  if (bytes / kMaxExpansion > tile.size()) return invalid_input("has not the points that the hierarchy states");
+  if (bytes / kMaxTileExpansion > tile.size()) return invalid_input("has not the points that the hierarchy states");
   const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(), ZSTD_freeDStream);
   std::vector<std::byte> records(bytes);
   ZSTD_inBuffer in{tile.data(), tile.size(), 0};

@@ -80,9 +80,9 @@ T nearest(double value) {
 }
 
 /// The rows of a table while parts of a scene are added.
-class Rows {
+class SceneRows {
  public:
-  explicit Rows(const std::vector<ColumnInfo>& columns) {
+  explicit SceneRows(const std::vector<ColumnInfo>& columns) {
     for (const ColumnInfo& column : columns) columns_.push_back(empty_values(column.type));
   }
 
@@ -139,7 +139,7 @@ class RowValues {
 };
 
 /// Linear light becomes sRGB. Without colours the factor is the colour.
-void add_colors(const RowValues& colors, const glm::vec3& factor, int bits, size_t column, Rows& rows) {
+void add_colors(const RowValues& colors, const glm::vec3& factor, int bits, size_t column, SceneRows& rows) {
   std::vector<glm::u16vec3> made(colors.rows());
   for (size_t i = 0; i < made.size(); ++i) {
     const glm::vec3 light =
@@ -237,7 +237,7 @@ Result<PointTable> GltfPoints::table(const glm::dmat4& transform) const {
   std::vector<std::string> wanted{"POSITION", "NORMAL", "COLOR_0"};
   wanted.insert(wanted.end(), scalars_.begin(), scalars_.end());
   GltfBuffers buffers = buffers_;  // counts the memory of this call
-  Rows rows(columns_);
+  SceneRows rows(columns_);
   for (const Part& part : scene_) {
     const Result<PrimitiveValues> values = read_gltf_primitive(parts_->json, *part.stated, wanted, buffers);
     if (!values) return fail(values);

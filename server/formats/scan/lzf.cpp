@@ -10,7 +10,7 @@ namespace {
 // bits of the distance less 1. The lower eight bits of the distance follow.
 constexpr unsigned kLiteral = 32;
 constexpr unsigned kLongLength = 7;
-constexpr size_t kMaxExpansion = 132;  // an upper bound: 3 bytes expand to at most 264
+constexpr size_t kMaxLzfExpansion = 132;  // an upper bound: 3 bytes expand to at most 264
 
 class Decoder {
  public:
@@ -60,7 +60,7 @@ class Decoder {
 }  // namespace
 
 std::optional<std::vector<uint8_t>> decompress_lzf(std::span<const std::byte> compressed, size_t size) {
-  if (size / kMaxExpansion > compressed.size()) return std::nullopt;
+  if (size / kMaxLzfExpansion > compressed.size()) return std::nullopt;
   std::vector<uint8_t> out(size);
   if (!Decoder(compressed, out).run()) return std::nullopt;
   return out;

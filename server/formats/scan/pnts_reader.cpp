@@ -20,7 +20,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-constexpr size_t kHeaderBytes = 28;
+constexpr size_t kPntsHeaderBytes = 28;
 
 Result<Json> parse_table(Bytes text) {
   if (text.empty()) return Json::object();
@@ -424,14 +424,14 @@ Result<PointTable> draco_table(const PntsTile& tile, const glm::dmat4& transform
 }  // namespace
 
 Result<TileTables> split_tile(Bytes bytes) {
-  if (bytes.size() < kHeaderBytes) return invalid_input("truncated: the file ends within its header");
+  if (bytes.size() < kPntsHeaderBytes) return invalid_input("truncated: the file ends within its header");
   const auto version = load<uint32_t>(&bytes[4]);
   if (version != 1) {
     const std::string kind = printable(as_text(bytes).substr(0, 4));
     return fail(ErrorKind::kUnsupported, kind + " version " + std::to_string(version) + " is not supported");
   }
   std::array<Bytes, 4> parts;
-  size_t at = kHeaderBytes;
+  size_t at = kPntsHeaderBytes;
   for (size_t i = 0; i < parts.size(); ++i) {
     const auto size = load<uint32_t>(&bytes[12 + 4 * i]);
     if (size > bytes.size() - at) return invalid_input("truncated: the tables of the tile run beyond the file");

@@ -15,10 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Levels below the root, more than coordinates of 32 bits have.
-constexpr size_t kDeepest = 40;
+constexpr size_t kDeepestPotree = 40;
 
 bool is_node_name(std::string_view name) {
-  return name.size() <= kDeepest && name.starts_with('r') &&
+  return name.size() <= kDeepestPotree && name.starts_with('r') &&
          std::all_of(name.begin() + 1, name.end(), [](char c) { return c >= '0' && c <= '7'; });
 }
 
@@ -81,7 +81,7 @@ Status read_hrc(const TileFile& file, const std::string& top, uint64_t step, con
     queue.pop_front();
     const auto mask = load<uint8_t>(&file.bytes()[at]);
     const auto points = load<uint32_t>(&file.bytes()[at + 1]);
-    if (name.size() > kDeepest) return file.error("is nested too deeply");
+    if (name.size() > kDeepestPotree) return file.error("is nested too deeply");
     const bool last_level = name.size() > top.size() && (name.size() - 1) % step == 0;
     if (last_level) {
       // The file of its own states the node again.
@@ -124,7 +124,7 @@ Result<std::vector<PotreeNode>> potree1_nodes(const fs::path& folder, const Json
     return nodes;
   }
   const uint64_t step = integer_of(description, "hierarchyStepSize").value_or(0);
-  if (step == 0 || step > kDeepest) return invalid_input("the Potree hierarchy is missing");
+  if (step == 0 || step > kDeepestPotree) return invalid_input("the Potree hierarchy is missing");
   std::vector<PotreeNode> nodes;
   std::vector<std::string> files{"r"};
   while (!files.empty()) {
@@ -165,7 +165,7 @@ Result<std::vector<PotreeNode>> potree2_nodes(const fs::path& folder, const Json
       const std::byte* entry = &file->bytes()[at];
       const std::string name = std::move(queue.front());
       queue.pop_front();
-      if (name.size() > kDeepest) return file->error("is nested too deeply");
+      if (name.size() > kDeepestPotree) return file->error("is nested too deeply");
       const PotreeNode node{name, load<uint32_t>(entry + 2), load<uint64_t>(entry + 6), load<uint64_t>(entry + 14)};
       if (load<uint8_t>(entry) == kLink) {
         if (chooser.wants(name)) pages.push_back({name, node.offset, node.bytes});

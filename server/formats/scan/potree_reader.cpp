@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 enum class Meaning { kPosition, kColor, kOctNormal, kPlain, kSkipped };
 
 /// A run of bytes of every point, and the columns it becomes.
-struct Attribute {
+struct PotreeAttribute {
   Meaning meaning = Meaning::kSkipped;
   size_t bytes = 0;
   std::vector<ColumnInfo> columns;
@@ -39,7 +39,7 @@ struct PotreeScan {
   geometry::Box cube;
   glm::dvec3 scale{1};
   glm::dvec3 offset{0};  ///< version 2
-  std::vector<Attribute> attributes;
+  std::vector<PotreeAttribute> attributes;
   std::vector<PotreeNode> nodes;
   double spacing = 0;  ///< version 2: of the points of the root; 0: not stated
   // Version 1.
@@ -52,12 +52,12 @@ struct PotreeScan {
 
   [[nodiscard]] size_t record_bytes() const {
     size_t bytes = 0;
-    for (const Attribute& attribute : attributes) bytes += attribute.bytes;
+    for (const PotreeAttribute& attribute : attributes) bytes += attribute.bytes;
     return bytes;
   }
   [[nodiscard]] std::vector<ColumnInfo> columns() const {
     std::vector<ColumnInfo> all;
-    for (const Attribute& attribute : attributes) {
+    for (const PotreeAttribute& attribute : attributes) {
       all.insert(all.end(), attribute.columns.begin(), attribute.columns.end());
     }
     return all;
@@ -84,7 +84,7 @@ std::vector<ColumnInfo> colors(ScalarType type) {
   return {{"red", type, false}, {"green", type, false}, {"blue", type, false}};
 }
 
-Attribute normal_attribute(Meaning meaning, size_t bytes) {
+PotreeAttribute normal_attribute(Meaning meaning, size_t bytes) {
   constexpr auto kF32 = ScalarType::kFloat32;
   return {meaning, bytes, {{"nx", kF32, false}, {"ny", kF32, false}, {"nz", kF32, false}}};
 }
@@ -92,7 +92,7 @@ Attribute normal_attribute(Meaning meaning, size_t bytes) {
 // ---- version 1
 
 /// An attribute of BIN nodes, by its name (PointAttribute.js of Potree 1).
-std::optional<Attribute> bin_attribute(const std::string& name) {
+std::optional<PotreeAttribute> bin_attribute(const std::string& name) {
   using Plain = std::pair<const char*, ColumnInfo>;
   static const std::array kPlain{Plain{"INTENSITY", {"intensity", ScalarType::kUint16, true}},
                                  Plain{"CLASSIFICATION", {"classification", ScalarType::kUint8, true}},
@@ -102,14 +102,14 @@ std::optional<Attribute> bin_attribute(const std::string& name) {
                                  Plain{"GPS_TIME", {"gps_time", ScalarType::kFloat64, true}},
                                  Plain{"INDICES", {"indices", ScalarType::kUint32, true}},
                                  Plain{"SPACING", {"spacing", ScalarType::kFloat32, true}}};
-  if (name == "POSITION_CARTESIAN") return Attribute{Meaning::kPosition, 12, doubles({"x", "y", "z"})};
-  if (name == "COLOR_PACKED" || name == "RGBA") return Attribute{Meaning::kPlain, 4, colors(ScalarType::kUint8)};
-  if (name == "RGB" || name == "RGB_PACKED") return Attribute{Meaning::kPlain, 3, colors(ScalarType::kUint8)};
+  if (name == "POSITION_CARTESIAN") return PotreeAttribute{Meaning::kPosition, 12, doubles({"x", "y", "z"})};
+  if (name == "COLOR_PACKED" || name == "RGBA") return PotreeAttribute{Meaning::kPlain, 4, colors(ScalarType::kUint8)};
+  if (name == "RGB" || name == "RGB_PACKED") return PotreeAttribute{Meaning::kPlain, 3, colors(ScalarType::kUint8)};
   if (name == "NORMAL_OCT16") return normal_attribute(Meaning::kOctNormal, 2);
-  if (name == "NORMAL_SPHEREMAPPED") return Attribute{Meaning::kSkipped, 2, {}};
+  if (name == "NORMAL_SPHEREMAPPED") return PotreeAttribute{Meaning::kSkipped, 2, {}};
   if (name == "NORMAL" || name == "NORMAL_FLOATS") return normal_attribute(Meaning::kPlain, 12);
   for (const auto& [known, column] : kPlain) {
-    if (name == known) return Attribute{Meaning::kPlain, size_of(column.type), {column}};
+    if (name == known) return PotreeAttribute{Meaning::kPlain, size_of(column.type), {column}};
   }
   return std::nullopt;
 }
@@ -118,7 +118,7 @@ Status parse_bin_attributes(const Json& list, PotreeScan& scan) {
   if (list.empty()) return invalid_input("the Potree description names no attributes");
   for (const Json& entry : list) {
     const std::string name = entry.is_string() ? entry.get<std::string>() : text_of(entry, "name");
-    std::optional<Attribute> attribute = bin_attribute(name);
+    std::optional<PotreeAttribute> attribute = bin_attribute(name);
     if (!attribute) {
       return fail(ErrorKind::kUnsupported, "Potree attribute " + printable(name) + " is not supported");
     }
@@ -203,7 +203,7 @@ void add_oct_normals(const std::byte* first, size_t stride, PointTable& table) {
 }
 
 /// Values of an attribute that stand next to each other.
-void add_plain(const Attribute& attribute, const std::byte* first, size_t stride, PointTable& table) {
+void add_plain(const PotreeAttribute& attribute, const std::byte* first, size_t stride, PointTable& table) {
   for (const ColumnInfo& column : attribute.columns) {
     table.columns.push_back({column.type, first, stride, false});
     first += size_of(column.type);
@@ -219,7 +219,7 @@ PointTable record_table(const PotreeScan& scan, std::vector<std::byte> records, 
   SURFCAST_EXPECTS(stride > 0);
   table.rows = table.records.size() / stride;
   const std::byte* first = table.records.data();
-  for (const Attribute& attribute : scan.attributes) {
+  for (const PotreeAttribute& attribute : scan.attributes) {
     if (attribute.meaning == Meaning::kPosition) {
       add_positions(first, stride, scan.scale, offset, is_signed, table);
     } else if (attribute.meaning == Meaning::kOctNormal) {
@@ -254,7 +254,7 @@ std::optional<ScalarType> type_named(const std::string& name) {
   return std::nullopt;
 }
 
-Result<Attribute> parse_attribute(const Json& json) {
+Result<PotreeAttribute> parse_attribute(const Json& json) {
   const std::string name = text_of(json, "name");
   const std::optional<ScalarType> type = type_named(text_of(json, "type"));
   const uint64_t elements = integer_of(json, "numElements").value_or(0);
@@ -264,13 +264,13 @@ Result<Attribute> parse_attribute(const Json& json) {
   const size_t bytes = elements * size_of(*type);
   if (name == "position") {
     if (elements != 3 || *type != ScalarType::kInt32) return invalid_input("Potree positions are not 32 bit integers");
-    return Attribute{Meaning::kPosition, bytes, doubles({"x", "y", "z"})};
+    return PotreeAttribute{Meaning::kPosition, bytes, doubles({"x", "y", "z"})};
   }
   if ((name == "rgb" || name == "rgba") && elements >= 3) {
     const bool wide = *type == ScalarType::kUint16 && elements == 3;
-    return Attribute{wide ? Meaning::kColor : Meaning::kPlain, bytes, colors(*type)};
+    return PotreeAttribute{wide ? Meaning::kColor : Meaning::kPlain, bytes, colors(*type)};
   }
-  Attribute attribute{Meaning::kPlain, bytes, {}};
+  PotreeAttribute attribute{Meaning::kPlain, bytes, {}};
   for (uint64_t i = 0; i < elements; ++i) {
     const std::string canonical = canonical_attribute_name(name);
     attribute.columns.push_back({elements == 1 ? canonical : canonical + '_' + std::to_string(i), *type, true});
@@ -301,7 +301,7 @@ Result<PotreeScan> parse_metadata(const fs::path& path, const Selection& selecti
   scan.brotli = encoding == "BROTLI";
   scan.spacing = number_of(json, "spacing", 0);
   for (const Json& entry : member(json, "attributes")) {
-    Result<Attribute> attribute = parse_attribute(entry);
+    Result<PotreeAttribute> attribute = parse_attribute(entry);
     if (!attribute) return fail(attribute);
     scan.attributes.push_back(std::move(*attribute));
   }
@@ -316,7 +316,7 @@ Result<PotreeScan> parse_metadata(const fs::path& path, const Selection& selecti
 }
 
 /// Bytes of a point in a column of BROTLI nodes: positions as two Morton words of 64 bits, colours as one.
-size_t brotli_bytes(const Attribute& attribute) {
+size_t brotli_bytes(const PotreeAttribute& attribute) {
   return attribute.meaning == Meaning::kPosition ? 16 : attribute.meaning == Meaning::kColor ? 8 : attribute.bytes;
 }
 
@@ -333,7 +333,7 @@ std::vector<std::byte> records_of_columns(const PotreeScan& scan, const std::vec
   std::vector<std::byte> records(rows * stride);
   const std::byte* from = columns.data();
   std::byte* first = records.data();
-  for (const Attribute& attribute : scan.attributes) {
+  for (const PotreeAttribute& attribute : scan.attributes) {
     for (size_t i = 0; i < rows; ++i, from += brotli_bytes(attribute)) {
       std::byte* to = first + i * stride;
       for (int axis = 0; axis < 3 && attribute.meaning == Meaning::kPosition; ++axis) {
@@ -358,7 +358,7 @@ Result<PointTable> points_of_node2(const PotreeScan& scan, const PotreeNode& nod
     return record_table(scan, {bytes.begin(), bytes.end()}, scan.offset, true);
   }
   size_t size = 0;
-  for (const Attribute& attribute : scan.attributes) size += brotli_bytes(attribute) * node.points;
+  for (const PotreeAttribute& attribute : scan.attributes) size += brotli_bytes(attribute) * node.points;
   std::vector<std::byte> columns(size);
   const auto outcome = BrotliDecoderDecompress(bytes.size(), reinterpret_cast<const uint8_t*>(bytes.data()), &size,
                                                reinterpret_cast<uint8_t*>(columns.data()));

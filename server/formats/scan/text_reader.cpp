@@ -149,7 +149,7 @@ Result<Prologue> read_prologue(std::string_view text) {
 // ---- rows
 
 /// The rows of one piece.
-struct Piece {
+struct TextPiece {
   std::vector<double> values;
   uint64_t announced = 0;     ///< rows stated by count lines in this piece
   const char* bad = nullptr;  ///< the first line that is not a row
@@ -177,8 +177,8 @@ std::optional<size_t> append_row(std::string_view line, const Format& format, st
   }
 }
 
-Piece read_rows(std::string_view text, const Format& format) {
-  Piece piece;
+TextPiece read_rows(std::string_view text, const Format& format) {
+  TextPiece piece;
   for (size_t at = 0; at < text.size();) {
     const std::string_view line = next_line(text, at);
     const std::string_view trimmed = trim_left(line);
@@ -232,7 +232,7 @@ class TextRows : public RowSource {
   [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }
   [[nodiscard]] size_t pieces() const override { return pieces_.size(); }
   [[nodiscard]] Result<PointTable> read(size_t piece) const override {
-    Piece rows = read_rows(pieces_[piece], format_);
+    TextPiece rows = read_rows(pieces_[piece], format_);
     if (rows.bad != nullptr) return bad_line(text_, rows.bad);
     PointTable table;
     table.rows = rows.values.size() / columns_.size();

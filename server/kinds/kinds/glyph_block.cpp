@@ -11,7 +11,7 @@
 namespace surfcast::kinds {
 namespace {
 
-constexpr uint32_t kPage = residency::BlockPool::kPageTexels;
+constexpr uint32_t kGlyphPage = residency::BlockPool::kPageTexels;
 
 }  // namespace
 
@@ -26,12 +26,12 @@ glm::vec4 GlyphBlock::scale(int unit) const {
 }
 
 void GlyphBlock::add_runs(const selection::RadiusRange& /*wanted*/, std::vector<residency::TexelRun>& runs) const {
-  const size_t in_page = kPage / each_;
+  const size_t in_page = kGlyphPage / each_;
   const size_t in_run = SURFCAST_CHUNK / each_;
   const uint32_t flags = (each_ << SURFCAST_RUN_ELLIPSOID_SHIFT) | (colored_ ? SURFCAST_RUN_ELLIPSOID_COLORED : 0U);
   for (size_t first = 0; first < items_;) {
     const size_t count = std::min({in_run, in_page - first % in_page, items_ - first});
-    const size_t texel = first / in_page * kPage + first % in_page * each_;
+    const size_t texel = first / in_page * kGlyphPage + first % in_page * each_;
     runs.push_back({static_cast<uint32_t>(texel), static_cast<uint32_t>(count * each_), flags});
     first += count;
   }
@@ -41,7 +41,7 @@ residency::PackedBlock pack_glyphs(const ellipsoid::EllipsoidBlock& block, const
                                    bool attributes) {
   residency::PackedBlock packed;
   packed.lattice = {block.grid, block.origin, glm::ivec3(0), block.extent};
-  packed.texels = ellipsoid::pack_ellipsoids(block, kPage);
+  packed.texels = ellipsoid::pack_ellipsoids(block, kGlyphPage);
   if (attributes) packed.attributes.resize(packed.texels.size());
   packed.header = std::make_shared<const GlyphBlock>(block, source);
   return packed;

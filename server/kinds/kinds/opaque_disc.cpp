@@ -30,10 +30,10 @@ double screen_form(const glm::dvec3& o, const glm::dvec3& n, double radius, cons
 }
 
 /// Rounding of bounds: relative, and in pixels.
-constexpr double kSlack = 1e-6;
+constexpr double kDiscSlack = 1e-6;
 
 /// A range of one coordinate of rays (x, y, 1).
-struct Interval {
+struct RayRange {
   double low = 0;
   double high = 0;
 };
@@ -42,7 +42,7 @@ struct Interval {
 /// in the ellipse of S = s^2 J J^T + rho^2 I only if v^2 <= S_xx. On a plane with the unit normal n, J J^T has the
 /// diagonal element 1 + x^2 - (n_x - x n_z)^2 at the ray x = x0 + v / eta. So v lies between the roots of a quadratic,
 /// whose leading coefficient is positive for discs in front of the eye plane. `ratio`: radius over depth.
-Interval ellipse_interval(double x0, double nx, double nz, double ratio, double eta) {
+RayRange ellipse_interval(double x0, double nx, double nz, double ratio, double eta) {
   const double s2 = std::pow(SURFCAST_VISIBILITY_RADIUS * ratio * eta, 2);
   const double rho2 = SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS;
   const double square = 1 - nz * nz;
@@ -50,24 +50,24 @@ Interval ellipse_interval(double x0, double nx, double nz, double ratio, double 
   const double linear = s2 * 2 * (nx * nz + square * x0) / eta;
   const double leading = 1 - s2 * square / (eta * eta);
   const double middle = linear / (2 * leading);
-  const double half = std::sqrt(std::max(0.0, middle * middle + constant / leading)) * (1 + kSlack) + kSlack;
+  const double half = std::sqrt(std::max(0.0, middle * middle + constant / leading)) * (1 + kDiscSlack) + kDiscSlack;
   return {x0 + (middle - half) / eta, x0 + (middle + half) / eta};
 }
 
 /// The x of all rays that meet a ball in front of the eye plane.
-Interval ball_interval(double x, double z, double radius) {
+RayRange ball_interval(double x, double z, double radius) {
   return {std::min((x - radius) / (z - radius), (x - radius) / (z + radius)),
           std::max((x + radius) / (z - radius), (x + radius) / (z + radius))};
 }
 
 /// The pixels of a rectangle whose rays lie in both intervals. None if there are none.
-std::optional<PixelRange> pixels_between(const Interval& x, const Interval& y, const geometry::CameraFrame& frame,
+std::optional<PixelRange> pixels_between(const RayRange& x, const RayRange& y, const geometry::CameraFrame& frame,
                                          const PixelRange& within) {
   const auto first = [](double edge, int least, int most) {
-    return static_cast<int>(std::clamp(std::ceil(edge - 0.5 - kSlack), double(least), most + 1.0));
+    return static_cast<int>(std::clamp(std::ceil(edge - 0.5 - kDiscSlack), double(least), most + 1.0));
   };
   const auto last = [](double edge, int least, int most) {
-    return static_cast<int>(std::clamp(std::floor(edge - 0.5 + kSlack), least - 1.0, double(most)));
+    return static_cast<int>(std::clamp(std::floor(edge - 0.5 + kDiscSlack), least - 1.0, double(most)));
   };
   const glm::dvec2 low = frame.project({x.low, y.high, 1});
   const glm::dvec2 high = frame.project({x.high, y.low, 1});
@@ -123,7 +123,7 @@ double ball_of(const surfel::OsculatingSurface& surface, double radius) {
 std::optional<PixelRange> ball_pixels(const glm::dvec3& o, double radius, const geometry::CameraFrame& frame,
                                       const PixelRange& within) {
   if (o.z + radius <= 0) return std::nullopt;
-  const double reach = radius * (1 + kSlack);
+  const double reach = radius * (1 + kDiscSlack);
   if (o.z <= reach) return within;
   return pixels_between(ball_interval(o.x, o.z, reach), ball_interval(o.y, o.z, reach), frame, within);
 }
@@ -136,8 +136,8 @@ std::optional<PixelRange> disc_pixels(const glm::dvec3& o, const glm::dvec3& n, 
                                       const geometry::CameraFrame& frame, const PixelRange& within) {
   if (o.z + 2 * radius <= 0) return std::nullopt;
   if (o.z > 1.5 * extent_of(radius)) {
-    const Interval x = ellipse_interval(o.x / o.z, n.x, n.z, radius / o.z, frame.eta);
-    const Interval y = ellipse_interval(o.y / o.z, n.y, n.z, radius / o.z, frame.eta);
+    const RayRange x = ellipse_interval(o.x / o.z, n.x, n.z, radius / o.z, frame.eta);
+    const RayRange y = ellipse_interval(o.y / o.z, n.y, n.z, radius / o.z, frame.eta);
     return pixels_between(x, y, frame, within);
   }
   return ball_pixels(o, radius, frame, within);

@@ -5,6 +5,7 @@
 
 #include "model/block_fields.h"
 #include "model/field.h"
+#include "model/item_lattice.h"
 #include "model/quantize.h"
 #include "model/scalar_bits.h"
 #include "surfel/curvature.h"
@@ -12,19 +13,11 @@
 namespace surfcast::model {
 namespace {
 
-bool all_at_most(const Column& column, uint64_t limit) {
-  return std::all_of(column.begin(), column.end(), [limit](uint64_t value) { return value <= limit; });
-}
-
 /// False if a value exceeds the limits of the shape. Such values would reach the renderer as arbitrary numbers.
 bool in_range(const std::vector<Field>& fields, const FieldLayout& layout, const Precision& codes,
               const BlockShape& shape) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!all_at_most(fields[kPositionField][axis], shape.extent[axis])) return false;
-  }
-  for (const Column& column : fields[kNormalField]) {
-    if (!all_at_most(column, codes.max_normal_code())) return false;
-  }
+  if (!within_extent(fields[kPositionField], shape.extent)) return false;
+  if (!all_at_most(fields[kNormalField], codes.max_normal_code())) return false;
   if (!all_at_most(fields[kRadiusField][0], codes.max_radius_code()) ||
       !all_at_most(fields[kWeightField][0], kMaxWeightCode)) {
     return false;

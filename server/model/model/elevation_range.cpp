@@ -5,7 +5,7 @@
 namespace surfcast::model {
 namespace {
 
-constexpr double kTail = 0.005;
+constexpr double kElevationTail = 0.005;
 constexpr double kBeyond = 0.1;
 constexpr double kMaxLeftOut = 0.1;
 
@@ -38,8 +38,8 @@ ElevationRange elevation_range(std::span<const ElevationSlab> slabs) {
     all = {std::min(all.low, slab.range.low), std::max(all.high, slab.range.high)};
     items += slab.items;
   }
-  const double low = elevation_above(slabs, kTail * items, all);
-  const double high = elevation_above(slabs, (1 - kTail) * items, all);
+  const double low = elevation_above(slabs, kElevationTail * items, all);
+  const double high = elevation_above(slabs, (1 - kElevationTail) * items, all);
   const double beyond = kBeyond * (high - low);
   const ElevationRange most{std::max(low - beyond, all.low), std::min(high + beyond, all.high)};
   const bool few_left_out = most.high - most.low >= (1 - kMaxLeftOut) * (all.high - all.low);

@@ -9,7 +9,7 @@ namespace surfcast::model {
 namespace {
 
 /// Share of the surfels below `low` and above `high`: large enough to exclude outliers and bright reflectors.
-constexpr double kTail = 0.02;
+constexpr double kExtremeTail = 0.02;
 
 /// Calls `use` with those of the members' values that are finite.
 template <typename Use>
@@ -138,8 +138,8 @@ std::vector<AttributeRange> AttributeStatistics::ranges(std::span<const std::str
     if (!(extremes.smallest <= extremes.largest)) continue;
     AttributeRange range{names[i], extremes.smallest, extremes.largest, extremes.smallest, extremes.largest};
     if (names[i] == "intensity") {
-      range.low = percentile(kTail, extremes);
-      range.high = percentile(1 - kTail, extremes);
+      range.low = percentile(kExtremeTail, extremes);
+      range.high = percentile(1 - kExtremeTail, extremes);
     }
     ranges.push_back(std::move(range));
   }

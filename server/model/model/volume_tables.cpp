@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kVolumeBytes = 3 * 4 + 3 * 4 + 12 * 8 + 1 + 1 + 4 * 8 + kHistogramBins * 8;
 constexpr size_t kBrickBytes = 28;
 
-tl::unexpected<Error> damaged(const char* what) {
+tl::unexpected<Error> damaged_tables(const char* what) {
   return fail(ErrorKind::kInvalidInput, what);
 }
 
@@ -134,17 +134,17 @@ void put_volumes(ByteWriter& writer, const Directory& directory) {
 
 Status get_volumes(ByteReader& reader, Directory& directory) {
   const auto volumes = reader.get<uint32_t>();
-  if (volumes > reader.rest().size() / kVolumeBytes) return damaged("model tables have a wrong length");
+  if (volumes > reader.rest().size() / kVolumeBytes) return damaged_tables("model tables have a wrong length");
   for (uint32_t i = 0; i < volumes; ++i) {
     directory.volumes.push_back(get_volume(reader));
-    if (!reader.ok() || !valid_volume(directory.volumes.back())) return damaged("model has a wrong volume");
+    if (!reader.ok() || !valid_volume(directory.volumes.back())) return damaged_tables("model has a wrong volume");
   }
   for (BlockRecord& block : directory.blocks) {
     if (directory.kinds[block.kind] != kGridKind) continue;
-    if (reader.rest().size() < kBrickBytes) return damaged("model tables have a wrong length");
+    if (reader.rest().size() < kBrickBytes) return damaged_tables("model tables have a wrong length");
     block.brick = static_cast<uint32_t>(directory.bricks.size());
     directory.bricks.push_back(get_brick(reader));
-    if (!valid_brick(directory.bricks.back(), directory)) return damaged("model has a wrong brick");
+    if (!valid_brick(directory.bricks.back(), directory)) return damaged_tables("model has a wrong brick");
   }
   return {};
 }

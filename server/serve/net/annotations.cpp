@@ -18,7 +18,7 @@ namespace surfcast::net {
 namespace {
 
 namespace fs = std::filesystem;
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "surfcast-annotations";
 constexpr int kVersion = 1;
@@ -28,7 +28,8 @@ tl::unexpected<Error> wrong(const std::string& what) {
 }
 
 /// Fails unless the object has these members and no others.
-Status check_members(const json& object, std::initializer_list<std::string_view> names, const std::string& where) {
+Status check_members(const ordered_json& object, std::initializer_list<std::string_view> names,
+                     const std::string& where) {
   if (!object.is_object()) return wrong(where + " is not an object");
   for (const auto& [name, value] : object.items()) {
     if (std::ranges::find(names, name) != names.end()) continue;
@@ -38,7 +39,7 @@ Status check_members(const json& object, std::initializer_list<std::string_view>
   return {};
 }
 
-Result<std::string> text_in(const json& object, const char* name, size_t most, const std::string& where) {
+Result<std::string> text_in(const ordered_json& object, const char* name, size_t most, const std::string& where) {
   const auto found = object.find(name);
   if (found == object.end() || !found->is_string()) return wrong(where + " has no " + name);
   std::string text = found->get<std::string>();
@@ -49,7 +50,7 @@ Result<std::string> text_in(const json& object, const char* name, size_t most, c
 }
 
 /// The parameters of a link to a view: names and values as in the address of the viewer.
-Result<json> parameters_in(const json& object, const std::string& where) {
+Result<ordered_json> parameters_in(const ordered_json& object, const std::string& where) {
   const auto found = object.find("parameters");
   if (found == object.end() || !found->is_object()) return wrong(where + " has no parameters");
   if (found->size() > kMaxViewParameters) return wrong(where + " has too many parameters");
@@ -61,60 +62,62 @@ Result<json> parameters_in(const json& object, const std::string& where) {
   return *found;
 }
 
-Result<json> position_in(const json& object, const std::string& where) {
+Result<ordered_json> position_in(const ordered_json& object, const std::string& where) {
   const auto found = object.find("position");
   const bool valid = found != object.end() && found->is_array() && found->size() == 3 &&
-                     std::ranges::all_of(*found, [](const json& coordinate) {
+                     std::ranges::all_of(*found, [](const ordered_json& coordinate) {
                        return coordinate.is_number() && std::isfinite(coordinate.get<double>());
                      });
   if (!valid) return wrong(where + ": position must be three finite numbers");
   return *found;
 }
 
-Result<json> view_of(const json& entry, const std::string& where) {
+Result<ordered_json> saved_view_of(const ordered_json& entry, const std::string& where) {
   if (Status status = check_members(entry, {"name", "parameters"}, where); !status) return fail(status);
   Result<std::string> name = text_in(entry, "name", kMaxViewNameBytes, where);
   if (!name) return fail(name);
-  Result<json> parameters = parameters_in(entry, where);
+  Result<ordered_json> parameters = parameters_in(entry, where);
   if (!parameters) return fail(parameters);
-  return json{{"name", std::move(*name)}, {"parameters", std::move(*parameters)}};
+  return ordered_json{{"name", std::move(*name)}, {"parameters", std::move(*parameters)}};
 }
 
-Result<json> annotation_of(const json& entry, const std::string& where) {
+Result<ordered_json> annotation_of(const ordered_json& entry, const std::string& where) {
   if (Status status = check_members(entry, {"text", "position", "parameters"}, where); !status) {
     return fail(status);
   }
   Result<std::string> text = text_in(entry, "text", kMaxAnnotationTextBytes, where);
   if (!text) return fail(text);
-  Result<json> position = position_in(entry, where);
+  Result<ordered_json> position = position_in(entry, where);
   if (!position) return fail(position);
-  Result<json> parameters = parameters_in(entry, where);
+  Result<ordered_json> parameters = parameters_in(entry, where);
   if (!parameters) return fail(parameters);
-  return json{{"text", std::move(*text)}, {"position", std::move(*position)}, {"parameters", std::move(*parameters)}};
+  return ordered_json{
+      {"text", std::move(*text)}, {"position", std::move(*position)}, {"parameters", std::move(*parameters)}};
 }
 
-using Normalize = Result<json> (*)(const json& entry, const std::string& where);
+using Normalize = Result<ordered_json> (*)(const ordered_json& entry, const std::string& where);
 
 /// The entries of a list, which may be absent.
-Result<json> entries_of(const json& document, const char* list, const std::string& entry_name, Normalize normalize) {
-  json entries = json::array();
+Result<ordered_json> entries_of(const ordered_json& document, const char* list, const std::string& entry_name,
+                                Normalize normalize) {
+  ordered_json entries = ordered_json::array();
   const auto found = document.find(list);
   if (found == document.end()) return entries;
   if (!found->is_array()) return wrong(std::string(list) + " is not a list");
   for (size_t i = 0; i < found->size(); ++i) {
-    Result<json> entry = normalize((*found)[i], entry_name + ' ' + std::to_string(i + 1));
+    Result<ordered_json> entry = normalize((*found)[i], entry_name + ' ' + std::to_string(i + 1));
     if (!entry) return fail(entry);
     entries.push_back(std::move(*entry));
   }
   return entries;
 }
 
-std::string text_of(json views, json annotations, const std::string& model) {
-  const json document{{"format", kFormat},
-                      {"version", kVersion},
-                      {"model", model},
-                      {"views", std::move(views)},
-                      {"annotations", std::move(annotations)}};
+std::string text_of(ordered_json views, ordered_json annotations, const std::string& model) {
+  const ordered_json document{{"format", kFormat},
+                              {"version", kVersion},
+                              {"model", model},
+                              {"views", std::move(views)},
+                              {"annotations", std::move(annotations)}};
   return json_text(document, 2) + "\n";
 }
 
@@ -136,18 +139,19 @@ Result<std::string> content_of(const fs::path& file, size_t most, const std::str
 }  // namespace
 
 Result<std::string> normalized_annotations(std::string_view document, const std::string& model) {
-  const json parsed = parse_ordered_json_text(document);
+  const ordered_json parsed = parse_ordered_json_text(document);
   if (parsed.is_discarded()) return wrong("the annotations are not JSON");
   if (Status status =
           check_members(parsed, {"format", "version", "model", "views", "annotations"}, "the document of annotations");
       !status) {
     return fail(status);
   }
-  if (parsed.value("format", json()) != kFormat) return wrong("the format is not \"surfcast-annotations\"");
-  if (parsed.value("version", json()) != kVersion) return wrong("the annotations are of another version of Surfcast");
-  Result<json> views = entries_of(parsed, "views", "view", view_of);
+  if (parsed.value("format", ordered_json()) != kFormat) return wrong("the format is not \"surfcast-annotations\"");
+  if (parsed.value("version", ordered_json()) != kVersion)
+    return wrong("the annotations are of another version of Surfcast");
+  Result<ordered_json> views = entries_of(parsed, "views", "view", saved_view_of);
   if (!views) return fail(views);
-  Result<json> annotations = entries_of(parsed, "annotations", "annotation", annotation_of);
+  Result<ordered_json> annotations = entries_of(parsed, "annotations", "annotation", annotation_of);
   if (!annotations) return fail(annotations);
   return text_of(std::move(*views), std::move(*annotations), model);
 }
@@ -171,7 +175,8 @@ fs::path annotation_file(const AnnotationConfig& config, const std::string& mode
 Result<Annotations> read_annotations(const AnnotationConfig& config, const std::string& model) {
   const fs::path file = annotation_file(config, model);
   std::error_code code;
-  if (!fs::exists(file, code) && !code) return with_edition(text_of(json::array(), json::array(), model));
+  if (!fs::exists(file, code) && !code)
+    return with_edition(text_of(ordered_json::array(), ordered_json::array(), model));
   const Result<std::string> content = content_of(file, config.bytes, model);
   if (!content) return fail(content);
   if (content->size() > config.bytes) return fail(ErrorKind::kLimit, "the annotations of " + model + " are too long");

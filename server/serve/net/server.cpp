@@ -32,6 +32,7 @@
 namespace surfcast::net {
 namespace {
 
+using Clock = std::chrono::steady_clock;
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
@@ -263,7 +264,6 @@ void Server::State::add(const std::shared_ptr<Session>& session) {
 /// Ends the connection that has been idle for longest: one of this client, if it has all that it may have. False if all
 /// are in use.
 bool Server::State::end_idle_for(const std::string& client) {
-  using Clock = std::chrono::steady_clock;
   const bool own = context->clients->has_all_its_connections(client);
   std::shared_ptr<Session> oldest;
   Clock::time_point since = Clock::now() - context->config.give_way;
@@ -319,7 +319,6 @@ void Server::State::tell_all(void (Session::*what)()) {
 
 /// Waits until no session is left, but no longer than this.
 asio::awaitable<void> Server::State::wait_for_sessions(std::chrono::milliseconds most) {
-  using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + most;
   error_code code;
   asio::steady_timer pause{io};
