@@ -370,6 +370,10 @@ function(surfcast_add_cases program name parts filter labels)
     endif()
     if(labels MATCHES "gl")
       set_tests_properties(${test} PROPERTIES PROCESSORS 2)  # software GL has several threads
+      if(NOT program STREQUAL "golden_gl_test")
+        # The shaders that it leaves in the cache are most of those that each of the others would compile beside it.
+        set_tests_properties(${test} PROPERTIES DEPENDS golden_gl_test)
+      endif()
       if(SURFCAST_SANITIZE)
         list(APPEND environment ASAN_OPTIONS=detect_leaks=0)  # Mesa leaks a little when its driver is unloaded
       endif()
