@@ -6,6 +6,6 @@ add_library(surfcast_boost STATIC ${CMAKE_CURRENT_LIST_DIR}/boost_asio.cpp ${CMA
 target_compile_definitions(surfcast_boost PUBLIC
   BOOST_ASIO_NO_DEPRECATED BOOST_ASIO_SEPARATE_COMPILATION BOOST_BEAST_SEPARATE_COMPILATION)
 # The thin client is to carry only what it calls of it.
-target_compile_options(surfcast_boost PRIVATE -ffunction-sections -fdata-sections)
+target_compile_options(surfcast_boost PRIVATE ${SURFCAST_IO_BOUND_OPTIONS} -ffunction-sections -fdata-sections)
 target_link_options(surfcast_boost INTERFACE LINKER:--gc-sections)
 target_link_libraries(surfcast_boost PUBLIC Boost::headers Threads::Threads)
