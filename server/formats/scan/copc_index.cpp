@@ -69,8 +69,9 @@ class HierarchyWalk {
     if (page.offset > file_.size() || page.size > file_.size() - page.offset) {
       return invalid_input("truncated: a page of the COPC hierarchy lies beyond the end of the file");
     }
-    if (page.size % kCopcEntryBytes != 0)
+    if (page.size % kCopcEntryBytes != 0) {
       return invalid_input("a page of the COPC hierarchy has a size that cannot be");
+    }
     if (!seen_.insert(page.offset).second) return invalid_input("a page of the COPC hierarchy is within itself");
     nodes_.page_bytes += page.size;
     if (nodes_.page_bytes > file_.size()) return invalid_input("pages of the COPC hierarchy overlap");
