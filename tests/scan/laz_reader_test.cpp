@@ -1,6 +1,4 @@
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -13,6 +11,7 @@
 #include "scan/las_reader.h"
 #include "scan/scan_stream.h"
 #include "scan/whole_scan.h"
+#include "support/file_content.h"
 #include "support/path_of.h"
 
 namespace surfcast::scan {
@@ -24,14 +23,9 @@ std::filesystem::path data_file(const std::string& name) {
   return std::filesystem::path(path_of("tests/data")) / "laz" / name;
 }
 
-std::string content_of(const std::string& name) {
-  std::ifstream in(data_file(name), std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// FNV-1a of all point records. The expected values are those of records that another decoder gave.
 uint64_t records_digest(const std::string& name) {
-  const std::string content = content_of(name);
+  const std::string content = testing::file_content(data_file(name));
   const Result<std::unique_ptr<RowSource>> rows = las_rows(testing::as_bytes(content));
   if (!rows) return 0;
   uint64_t digest = 14695981039346656037U;
@@ -59,7 +53,7 @@ TEST(LazReaderTest, CompressedFilesAreScansLikeAnyOther) {
 }
 
 TEST(LazReaderTest, EveryTruncationOfAFileIsOneLineThatNamesIt) {
-  const std::string whole = content_of("indoor.laz");
+  const std::string whole = testing::file_content(data_file("indoor.laz"));
   for (size_t size = 0; size + 4 < whole.size(); size += 7) {
     const Result<testing::WholeScan> points = testing::read_whole(testing::as_bytes(whole.substr(0, size)), "scan.laz");
     ASSERT_FALSE(points) << size;
@@ -71,7 +65,7 @@ TEST(LazReaderTest, EveryTruncationOfAFileIsOneLineThatNamesIt) {
 TEST(LazReaderTest, FilesWithChangedBytesAreReadOrRefused) {
   std::mt19937 random(11);
   for (const char* name : {"indoor.laz", "lion.laz", "random-rgb-nir.laz"}) {
-    const std::string whole = content_of(name);
+    const std::string whole = testing::file_content(data_file(name));
     for (int i = 0; i < 300; ++i) {
       std::string damaged = whole;
       const size_t at = i % 3 == 0 ? random() % 500 : random() % damaged.size();
@@ -118,7 +112,7 @@ TEST(LazReaderTest, ALargeChunkIsReadInSlicesInAnyOrder) {
 }
 
 TEST(LazReaderTest, ACompressedFileWithoutTheRecordOfLaszipIsRefused) {
-  std::string content = content_of("indoor.laz");
+  std::string content = testing::file_content(data_file("indoor.laz"));
   content[content.find("laszip encoded")] = 'L';
   const Result<testing::WholeScan> points = testing::read_whole(testing::as_bytes(content), "scan.laz");
   ASSERT_FALSE(points);

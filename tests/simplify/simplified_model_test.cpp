@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,6 +12,7 @@
 #include "model/model_file.h"
 #include "shared/frame_layout.h"
 #include "simplify/smooth_scenes.h"
+#include "support/file_content.h"
 
 namespace surfcast::testing {
 namespace {
@@ -46,11 +46,6 @@ class SimplifiedModel : public ::testing::Test {
         builder::build_model(inputs, folder_ / name, options, [](const builder::BuildStep&) {});
     if (!report) error_ = report.error().message;
     return report ? *report : builder::BuildReport{};
-  }
-
-  std::string bytes_of(const std::string& name) {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
   }
 
   fs::path folder_;
@@ -138,7 +133,7 @@ TEST_F(SimplifiedModel, IsThePlainOneWhereItDoesNotPay) {
   ASSERT_TRUE(report.simplified) << error_;
   EXPECT_FALSE(report.simplified->pays);
   EXPECT_THAT(report.scan.notes, ::testing::Contains(::testing::HasSubstr("not simplified, because")));
-  EXPECT_EQ(bytes_of("refused.surf"), bytes_of("plain.surf"));
+  EXPECT_EQ(file_content(folder_ / "refused.surf"), file_content(folder_ / "plain.surf"));
 }
 
 TEST_F(SimplifiedModel, IsRefusedForScansThatAreBuiltInParts) {

@@ -6,20 +6,16 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "kinds/ray_range.h"
+
 namespace surfcast::kinds {
 namespace {
 
 constexpr double kFlattest = 1e-12;
-constexpr double kSlack = 1e-6;  // rounding of bounds, pixels
-
-struct SlopeRange {
-  double low = 0;
-  double high = 0;
-};
 
 /// The slopes s = x / z of all points in front of the eye's plane. The tangent ones are the roots of
 /// (c_x - s c_z)^2 = |A_x - s A_z|^2; rows of A.
-SlopeRange slopes(double cx, double cz, const glm::dvec3& ax, const glm::dvec3& az) {
+RayRange slopes(double cx, double cz, const glm::dvec3& ax, const glm::dvec3& az) {
   // Slopes t relative to the centre's: leading t^2 - 2 p t = |across|^2.
   const double leading = (cz - glm::length(az)) * (cz + glm::length(az));
   const glm::dvec3 across = ax - cx / cz * az;
@@ -58,12 +54,12 @@ double EllipsoidOnRays::nearest_depth() const {
 }
 
 PixelRange EllipsoidOnRays::pixels(const geometry::CameraFrame& frame, const PixelRange& within) const {
-  if (!(nearest_depth() > kSlack * semi_axes_.x)) return within;
+  if (!(nearest_depth() > kBoundSlack * semi_axes_.x)) return within;
   const glm::dmat3 rows = glm::transpose(axes_);
-  const SlopeRange x = slopes(centre_.x, centre_.z, rows[0] * semi_axes_, rows[2] * semi_axes_);
-  const SlopeRange y = slopes(centre_.y, centre_.z, rows[1] * semi_axes_, rows[2] * semi_axes_);
-  const glm::dvec2 low = frame.project({x.low, y.high, 1}) - 0.5 - kSlack;
-  const glm::dvec2 high = frame.project({x.high, y.low, 1}) - 0.5 + kSlack;
+  const RayRange x = slopes(centre_.x, centre_.z, rows[0] * semi_axes_, rows[2] * semi_axes_);
+  const RayRange y = slopes(centre_.y, centre_.z, rows[1] * semi_axes_, rows[2] * semi_axes_);
+  const glm::dvec2 low = frame.project({x.low, y.high, 1}) - 0.5 - kBoundSlack;
+  const glm::dvec2 high = frame.project({x.high, y.low, 1}) - 0.5 + kBoundSlack;
   const auto bounded = [](double edge, int least, int most) {
     return static_cast<int>(std::clamp(edge, static_cast<double>(least), static_cast<double>(most)));
   };

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <limits>
 
+#include "kinds/ray_range.h"
 #include "shared/kernel.h"
 
 namespace surfcast::kinds {
@@ -29,15 +30,6 @@ double screen_form(const glm::dvec3& o, const glm::dvec3& n, double radius, cons
   return (s2 * glm::dot(mn, mn) + rho2 * glm::dot(v, v)) / det;
 }
 
-/// Rounding of bounds: relative, and in pixels.
-constexpr double kDiscSlack = 1e-6;
-
-/// A range of one coordinate of rays (x, y, 1).
-struct RayRange {
-  double low = 0;
-  double high = 0;
-};
-
 /// The x of all rays for which screen_form is at most 1; y likewise. A ray that is v pixels from the centre's, x0, is
 /// in the ellipse of S = s^2 J J^T + rho^2 I only if v^2 <= S_xx. On a plane with the unit normal n, J J^T has the
 /// diagonal element 1 + x^2 - (n_x - x n_z)^2 at the ray x = x0 + v / eta. So v lies between the roots of a quadratic,
@@ -50,7 +42,7 @@ RayRange ellipse_interval(double x0, double nx, double nz, double ratio, double 
   const double linear = s2 * 2 * (nx * nz + square * x0) / eta;
   const double leading = 1 - s2 * square / (eta * eta);
   const double middle = linear / (2 * leading);
-  const double half = std::sqrt(std::max(0.0, middle * middle + constant / leading)) * (1 + kDiscSlack) + kDiscSlack;
+  const double half = std::sqrt(std::max(0.0, middle * middle + constant / leading)) * (1 + kBoundSlack) + kBoundSlack;
   return {x0 + (middle - half) / eta, x0 + (middle + half) / eta};
 }
 
@@ -64,10 +56,10 @@ RayRange ball_interval(double x, double z, double radius) {
 std::optional<PixelRange> pixels_between(const RayRange& x, const RayRange& y, const geometry::CameraFrame& frame,
                                          const PixelRange& within) {
   const auto first = [](double edge, int least, int most) {
-    return static_cast<int>(std::clamp(std::ceil(edge - 0.5 - kDiscSlack), double(least), most + 1.0));
+    return static_cast<int>(std::clamp(std::ceil(edge - 0.5 - kBoundSlack), double(least), most + 1.0));
   };
   const auto last = [](double edge, int least, int most) {
-    return static_cast<int>(std::clamp(std::floor(edge - 0.5 + kDiscSlack), least - 1.0, double(most)));
+    return static_cast<int>(std::clamp(std::floor(edge - 0.5 + kBoundSlack), least - 1.0, double(most)));
   };
   const glm::dvec2 low = frame.project({x.low, y.high, 1});
   const glm::dvec2 high = frame.project({x.high, y.low, 1});
@@ -123,7 +115,7 @@ double ball_of(const surfel::OsculatingSurface& surface, double radius) {
 std::optional<PixelRange> ball_pixels(const glm::dvec3& o, double radius, const geometry::CameraFrame& frame,
                                       const PixelRange& within) {
   if (o.z + radius <= 0) return std::nullopt;
-  const double reach = radius * (1 + kDiscSlack);
+  const double reach = radius * (1 + kBoundSlack);
   if (o.z <= reach) return within;
   return pixels_between(ball_interval(o.x, o.z, reach), ball_interval(o.y, o.z, reach), frame, within);
 }
