@@ -21,6 +21,7 @@ demo:
 # for two.
 TEST_JOBS = $(shell expr $$(nproc) \* 4)
 test: build
+	$(if $(ALL),cmake --build --preset release --target nightly_tests)
 	cmake/run_tests.sh release build -j$(TEST_JOBS) $(if $(ALL),,--label-exclude nightly)
 
 # CHANGED=1: builds, and runs the tests that can see what differs from BASE (the last commit), as many as take

@@ -305,7 +305,8 @@ endfunction()
 # under it in `make nightly`, as all unit tests do under the address sanitizer.
 # COMPUTES: optimized a little, as tests with the labels gl and slow are.
 # NIGHTLY: patterns of cases, as in filters of GoogleTest. These cases run in `make nightly` alone, not in `make test`:
-# they are a test of their own with the suite `nightly`. Sanitizers do not run them.
+# they are a test of their own with the suite `nightly`. Sanitizers do not run them. NIGHTLY *: all cases. The program is
+# not built by default either, but by the target nightly_tests.
 function(surfcast_test name)
   cmake_parse_arguments(ARG "COMPUTES" "PARTS" "NIGHTLY;SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_PARTS)
@@ -324,6 +325,12 @@ function(surfcast_test name)
   surfcast_join_sources(${name})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
+  endif()
+  if(ARG_NIGHTLY STREQUAL "*")
+    set_property(TARGET ${name} PROPERTY EXCLUDE_FROM_ALL ON)
+    add_dependencies(nightly_tests ${name})
+    surfcast_add_cases(${name} ${name} ${ARG_PARTS} "*" "${ARG_LABELS}-nightly")
+    return()
   endif()
   if(ARG_LABELS MATCHES "^unit|^gl-numerics|hostile")
     add_dependencies(sanitized_tests ${name})
