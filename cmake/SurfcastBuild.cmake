@@ -24,9 +24,11 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 # For the cache, paths below the checkout are relative to the build folder, so that all checkouts of a machine share it.
+# CCACHE_DEPEND: it learns from the compiler which headers a source includes. Otherwise it preprocesses each source before
+# it is compiled, which takes a tenth of the time.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(ccache_settings CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1)
+  set(ccache_settings CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1 CCACHE_DEPEND=1)
   if(SURFCAST_PCH)
     # What ccache asks for before it caches compilations with precompiled headers.
     list(APPEND ccache_settings CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime)
