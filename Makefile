@@ -79,14 +79,14 @@ asan: sanitizer-packages
 	cmake/sanitize.sh asan-ubsan input_tests 'bytes|hostile' $(SEEN)
 
 asan-all: sanitizer-packages
-	cmake/sanitize.sh asan-ubsan sanitized_tests '^unit|^gl-numerics|hostile'
+	cmake/sanitize.sh asan-ubsan sanitized_tests '^unit|^gl-numerics|hostile' --nightly
 
 # The tests that are about threads, under the thread sanitizer; tsan-all: also those that use sockets.
 tsan: sanitizer-packages
 	cmake/sanitize.sh tsan thread_tests threads $(SEEN)
 
 tsan-all: sanitizer-packages
-	cmake/sanitize.sh tsan concurrent_tests 'threads|sockets'
+	cmake/sanitize.sh tsan concurrent_tests 'threads|sockets' --nightly
 
 sanitizer-packages: packages
 	@cmake/install_packages.sh sanitize

@@ -109,7 +109,7 @@ set(SURFCAST_COMMON_HEADERS
 surfcast_precompiled_headers(surfcast_module_headers HEADERS ${SURFCAST_COMMON_HEADERS})
 
 # Sanitized builds do not optimize, which halves their compile time, but for modules that compute for most of the time
-# of the tests.
+# of the tests of input.
 if(SURFCAST_SANITIZE)
   surfcast_precompiled_headers(surfcast_computing_module_headers HEADERS ${SURFCAST_COMMON_HEADERS} OPTIONS -O1)
 endif()
@@ -296,7 +296,8 @@ function(surfcast_test_library name)
   surfcast_join_sources(${name})
 endfunction()
 
-# surfcast_test(NAME [COMPUTES] [PARTS n] [NIGHTLY pattern...] SOURCES file... [LIBS lib...] [LABELS label...])
+# surfcast_test(NAME [COMPUTES] [PARTS n] [NIGHTLY pattern...] [SANITIZED_NIGHTLY pattern...] SOURCES file...
+#   [LIBS lib...] [LABELS label...])
 # One GoogleTest program of one module, and one test of ctest: most cases take less time than a process needs to start.
 # PARTS: the cases are dealt out to n tests, NAME_1 to NAME_n, which run beside each other. For programs that take more
 # than half a minute and do not draw: processes that draw compile the same shaders, each of them where none is cached.
@@ -309,8 +310,10 @@ endfunction()
 # NIGHTLY: patterns of cases, as in filters of GoogleTest. These cases run in `make nightly` alone, not in `make test`:
 # they are a test of their own with the suite `nightly`. Sanitizers do not run them. NIGHTLY *: all cases. The program is
 # not built by default either, but by the target nightly_tests.
+# SANITIZED_NIGHTLY: patterns of cases of a program with the suite `bytes` that compute rather than read bytes of
+# strangers. The sanitizers run them in `make nightly` alone.
 function(surfcast_test name)
-  cmake_parse_arguments(ARG "COMPUTES" "PARTS" "NIGHTLY;SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "COMPUTES" "PARTS" "NIGHTLY;SANITIZED_NIGHTLY;SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_PARTS)
     set(ARG_PARTS 1)
   endif()
@@ -348,13 +351,20 @@ function(surfcast_test name)
   if(ARG_LABELS MATCHES "threads|sockets")
     add_dependencies(concurrent_tests ${name})
   endif()
-  if(NOT ARG_NIGHTLY)
-    surfcast_add_cases(${name} ${name} ${ARG_PARTS} "*" "${ARG_LABELS}")
-    return()
+  set(nightly ${ARG_NIGHTLY})
+  set(left_out ${ARG_NIGHTLY})
+  if(SURFCAST_SANITIZE)
+    set(nightly ${ARG_SANITIZED_NIGHTLY})
+    list(APPEND left_out ${ARG_SANITIZED_NIGHTLY})
   endif()
-  list(JOIN ARG_NIGHTLY : nightly)
-  surfcast_add_cases(${name} ${name} ${ARG_PARTS} "-${nightly}" "${ARG_LABELS}")
-  if(NOT SURFCAST_SANITIZE)
+  list(JOIN left_out : left_out)
+  list(JOIN nightly : nightly)
+  set(filter "*")
+  if(left_out)
+    set(filter "-${left_out}")
+  endif()
+  surfcast_add_cases(${name} ${name} ${ARG_PARTS} "${filter}" "${ARG_LABELS}")
+  if(nightly)
     surfcast_add_cases(${name} ${name}_nightly 1 "${nightly}" "${ARG_LABELS}-nightly")
   endif()
 endfunction()

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# sanitize.sh PRESET TARGET LABELS [--base REVISION]: builds TARGET with the sanitizers of PRESET and runs the tests whose
-# labels match LABELS. With --base, only the programs that can see what differs from REVISION; the build of the preset
-# `release` knows which these are.
+# sanitize.sh PRESET TARGET LABELS [--nightly | --base REVISION]: builds TARGET with the sanitizers of PRESET and runs the
+# tests whose labels match LABELS. --nightly: also those that run in `make nightly` alone. --base: only the programs that
+# can see what differs from REVISION; the build of the preset `release` knows which these are.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=$1
@@ -18,15 +18,17 @@ fi
 
 cmake --preset "$preset" >/dev/null
 targets=("$target")
-selection=()
-if [ $# -gt 0 ]; then
+selection=(--label-exclude nightly)
+if [ "${1:-}" = --nightly ]; then
+  selection=()
+elif [ $# -gt 0 ]; then
   mapfile -t targets < <(cmake/affected_tests.py build "$@" --programs "$labels")
   if [ ${#targets[@]} = 0 ]; then
     echo "no test with these labels sees the change"
     exit 0
   fi
   # A further test of a program has the program's name and a word or a number.
-  selection=(--tests-regex "^($(IFS='|' && echo "${targets[*]}"))(_[a-z]+|_[0-9]+)?$")
+  selection+=(--tests-regex "^($(IFS='|' && echo "${targets[*]}"))(_[a-z]+|_[0-9]+)?$")
 fi
 "${fixed[@]}" cmake --build --preset "$preset" --target "${targets[@]}"
 "${fixed[@]}" cmake/run_tests.sh "$preset" "build-$preset" "-j$(nproc)" --label-regex "$labels" "${selection[@]}"

@@ -1,19 +1,23 @@
 // Any damage to a model of volumes or of Gaussians results in an error within bounds of time and memory. A separate
 // program, because it counts all allocated memory.
 
-#include <array>
 #include <cmath>
-#include <fstream>
+#include <optional>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 
-#include "builder/build_model.h"
-#include "gaussian/gaussian_scenes.h"
+#include "gaussian/gaussian_block.h"
 #include "kinds/kind_table.h"
 #include "model/damage.h"
 #include "model/format.h"
+#include "model/model_writer.h"
 #include "support/sample_size.h"
+#include "volume/brick_block.h"
+#include "volume/brick_coding.h"
+#include "volume/pyramid.h"
 
 namespace surfcast::kinds {
 namespace {
@@ -21,29 +25,88 @@ namespace {
 using model::Bytes;
 using model::TestFolder;
 
-constexpr int kSample = 1500;
+constexpr int kSample = 500;
 constexpr size_t kOwnNeeds = 4 << 20;  // for a brick or a block of Gaussians, independent of the file's claims
 
-Bytes built(const TestFolder& folder, const std::filesystem::path& input) {
-  const std::filesystem::path target = folder / "whole.surf";
-  const auto report = builder::build_model(std::array{input}, target, {}, [](const builder::BuildStep&) {});
+/// The bytes of a finished model.
+Bytes finished(model::ModelWriter& writer, const std::filesystem::path& target) {
+  const Result<model::WriteReport> report = writer.finish();
   EXPECT_TRUE(report) << (report ? "" : report.error().message);
   return model::content_of(target);
 }
 
-/// A volume of two levels.
+model::Volume wave_volume(const glm::u32vec3& size) {
+  model::Volume volume;
+  volume.name = "waves";
+  volume.size = size;
+  volume.index_to_world = glm::dmat4x3(glm::dmat4(glm::dmat3(1, 0, 0, 0, 2, 0, 0, 0, 3)));
+  volume.low = 20;
+  volume.high = 220;
+  volume.histogram.assign(model::kHistogramBins, 0);
+  volume.histogram[0] = volume.samples();
+  return volume;
+}
+
+/// A volume of two levels: two bricks and the one that stands for them.
 Bytes volumes(const TestFolder& folder) {
-  std::ofstream file(folder / "grid.nrrd", std::ios::binary);
-  file << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 9 7\nspacings: 1 2 3\nencoding: raw\n\n";
-  for (int i = 0; i < 40 * 9 * 7; ++i) file.put(static_cast<char>(static_cast<uint8_t>(120 + 100 * std::sin(0.1 * i))));
-  file.close();
-  return built(folder, folder / "grid.nrrd");
+  const model::Volume volume = wave_volume({40, 9, 7});
+  Result<model::ModelWriter> writer = model::ModelWriter::create(folder / "whole.surf", {});
+  std::vector<uint32_t> finest;
+  std::optional<volume::Pyramid<float>> pyramid;
+  pyramid.emplace(volume.size, [&](uint32_t level, uint32_t k) -> Status {
+    for (uint32_t i = 0; i < volume::level_bricks(volume.size, level).x; ++i) {
+      volume::BrickHeader place;
+      place.level = level;
+      place.brick = {i, 0, k};
+      place.count = volume::brick_count(volume.size, level, place.brick);
+      const volume::SampleScale scale{1, 0, level == 0 ? 1 : 0.125};
+      const volume::Brick brick = volume::make_brick(place, pyramid->samples(level, place.brick), scale);
+      const Result<uint32_t> block = writer->add(volume::brick_block(brick, volume, volume::bounds_lattice(volume)),
+                                                 volume::brick_key(volume.size, level, place.brick),
+                                                 level == 0 ? std::vector<uint32_t>() : finest);
+      if (!block) return fail(block);
+      finest.push_back(*block);
+    }
+    return {};
+  });
+  for (uint32_t k = 0; k < volume.size.z; ++k) {
+    const std::span<float> plane = pyramid->next_plane();
+    for (size_t i = 0; i < plane.size(); ++i) {
+      plane[i] = std::round(120 + 100 * std::sin(0.1F * static_cast<float>(k * plane.size() + i)));
+    }
+    EXPECT_TRUE(pyramid->add_plane());
+  }
+  EXPECT_EQ(finest.size(), 3U);
+  writer->set_volumes({volume});
+  return finished(*writer, folder / "whole.surf");
+}
+
+/// Needles with harmonics of the third degree.
+gaussian::Gaussians needles(size_t count, int degree) {
+  std::mt19937 random(3);
+  const auto uniform = [&random](float low, float high) {
+    return std::uniform_real_distribution<float>(low, high)(random);
+  };
+  gaussian::Gaussians needles;
+  for (size_t i = 0; i < count; ++i) {
+    needles.positions.emplace_back(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+    const float length = uniform(0.05F, 0.25F);
+    needles.scales.emplace_back(length, 0.05F * length, 0.05F * length);
+    needles.rotations.push_back(
+        glm::normalize(glm::quat(uniform(0.1F, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))));
+    needles.opacities.push_back(uniform(0.3F, 0.9F));
+    for (size_t k = 0; k < 3 * gaussian::harmonics_of(degree); ++k) needles.harmonics.push_back(uniform(-0.5F, 0.5F));
+  }
+  return needles;
 }
 
 Bytes gaussians(const TestFolder& folder) {
-  reference::GaussianModel model = reference::make_gaussian_model("needles");
-  model.splats.resize(200);
-  return built(folder, testing::write_ply(folder / "needles.ply", model));
+  model::ModelSchema schema;
+  schema.color_bits = 8;
+  schema.harmonics_degree = 3;
+  Result<model::ModelWriter> writer = model::ModelWriter::create(folder / "whole.surf", schema);
+  EXPECT_TRUE(writer->add(gaussian::encode_gaussians(needles(200, 3), {.degree = 3}), ldc::OctreeKey(), {}));
+  return finished(*writer, folder / "whole.surf");
 }
 
 struct Source {
