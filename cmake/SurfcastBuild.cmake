@@ -369,6 +369,12 @@ function(surfcast_test name)
   endif()
 endfunction()
 
+# surfcast_await_shaders(TEST...): the tests draw, in their own process or by a server. They begin after golden_gl_test:
+# the shaders that it leaves in the cache are most of those that each of them would compile beside it.
+function(surfcast_await_shaders)
+  set_tests_properties(${ARGN} PROPERTIES DEPENDS golden_gl_test)
+endfunction()
+
 # Adds the cases of a program that the filter of GoogleTest selects, as `parts` tests. Long tests begin first, as long as
 # ctest has not measured them, so that none of them is left over at the end.
 function(surfcast_add_cases program name parts filter labels)
@@ -386,18 +392,19 @@ function(surfcast_add_cases program name parts filter labels)
     endif()
     add_test(NAME ${test} COMMAND ${program} ${arguments})
     set(cost 20)
-    if(labels MATCHES "gl|hostile|slow" OR parts GREATER 1)
+    if(labels MATCHES "slow")
+      set(cost 60)
+    elseif(labels MATCHES "gl|hostile" OR parts GREATER 1)
       set(cost 40)
     endif()
     if(labels MATCHES "gl")
       set_tests_properties(${test} PROPERTIES PROCESSORS 2)  # software GL has several threads
-      if(NOT program STREQUAL "golden_gl_test")
-        # The shaders that it leaves in the cache are most of those that each of the others would compile beside it.
-        set_tests_properties(${test} PROPERTIES DEPENDS golden_gl_test)
-      endif()
       if(SURFCAST_SANITIZE)
         list(APPEND environment ASAN_OPTIONS=detect_leaks=0)  # Mesa leaks a little when its driver is unloaded
       endif()
+    endif()
+    if(labels MATCHES "gl|programs" AND NOT program STREQUAL "golden_gl_test")
+      surfcast_await_shaders(${test})
     endif()
     set_tests_properties(${test} PROPERTIES
       LABELS "${labels}" TIMEOUT 1800 COST ${cost} ENVIRONMENT "${environment}")

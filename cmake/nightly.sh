@@ -10,6 +10,7 @@ cd "$(dirname "$0")/.."
 export SURFCAST_DAMAGED_INPUTS=10000
 export SURFCAST_STOPPED_BUILDS=40
 export SURFCAST_SOAK_SECONDS=60
+export SURFCAST_SHADER_INTERVAL=1
 
 runs=${SURFCAST_NIGHTLY_RUNS:-20}
 load=${SURFCAST_NIGHTLY_LOAD:-4}
@@ -18,6 +19,7 @@ load=${SURFCAST_NIGHTLY_LOAD:-4}
 # repeats each until it fails. Inputs are sampled, as in `make test`.
 under_load() {
   env --unset=SURFCAST_DAMAGED_INPUTS --unset=SURFCAST_STOPPED_BUILDS --unset=SURFCAST_SOAK_SECONDS \
+    --unset=SURFCAST_SHADER_INTERVAL \
     ctest --preset release "-j$(($(nproc) * load))" --repeat "until-fail:$runs"
 }
 
