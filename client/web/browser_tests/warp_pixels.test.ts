@@ -36,9 +36,9 @@ function turned(radians: number): Projection {
 }
 
 /** The pixels, rows from the top, each red, green and blue. */
-async function warped(below: Frame, above: Frame | undefined, target: Projection): Promise<number[]> {
+async function warped(below: Frame, above: Frame | undefined, target: Projection): Promise<Uint8Array> {
   const passed = [below, above].map((frame) => frame && { ...frame, color: `${frame.color}`, depth: `${frame.depth}` });
-  return session.page.evaluate(
+  const base64 = await session.page.evaluate(
     async ({ passed, target, modules }) => {
       const { WarpPainter } = (await window.load(modules.painter)) as typeof WarpPainterModule;
       const { meshOf } = (await window.load(modules.mesh)) as typeof WarpMeshModule;
@@ -74,14 +74,18 @@ async function warped(below: Frame, above: Frame | undefined, target: Projection
       const { width, height } = target;
       const bytes = new Uint8Array(4 * width * height);
       gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-      const result: number[] = [];
+      let text = ''; // an array of as many numbers would take seconds to get here
       for (let y = height - 1; y >= 0; --y) {
-        for (let x = 0; x < width; ++x) result.push(...bytes.subarray(4 * (y * width + x), 4 * (y * width + x) + 3));
+        for (let x = 0; x < width; ++x) {
+          const at = 4 * (y * width + x);
+          text += String.fromCharCode(bytes[at]!, bytes[at + 1]!, bytes[at + 2]!);
+        }
       }
-      return result;
+      return btoa(text);
     },
     { passed, target, modules: { painter: '/src/warp/warp_painter.ts', mesh: '/src/warp/warp_mesh.ts' } },
   );
+  return Buffer.from(base64, 'base64');
 }
 
 const noise = (x: number, y: number): Rgb => {
@@ -97,7 +101,7 @@ const smooth = (x: number, y: number): Rgb => [
 ];
 
 /** Number of pixels that a function of the pixel and its colour counts. */
-function count(pixels: readonly number[], counts: (x: number, y: number, color: Rgb) => boolean): number {
+function count(pixels: Uint8Array, counts: (x: number, y: number, color: Rgb) => boolean): number {
   let sum = 0;
   for (let i = 0; i < pixels.length / 3; ++i) {
     const color = [pixels[3 * i]!, pixels[3 * i + 1]!, pixels[3 * i + 2]!] as const;

@@ -21,7 +21,9 @@ export const record = (page: Page): Promise<void> =>
       copy.canvas.height = canvas.height;
       copy.drawImage(canvas, 0, 0);
       const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
-      return data.reduce((value, byte) => (Math.imul(value, 31) + byte) | 0, 1);
+      let value = 1;
+      for (const pixel of new Uint32Array(data.buffer)) value = (Math.imul(value, 31) + pixel) | 0;
+      return value;
     };
     // The page has heard of the event before, so that its own animation frame comes first.
     addEventListener('pointermove', () =>
