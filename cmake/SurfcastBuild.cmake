@@ -109,7 +109,7 @@ set(SURFCAST_COMMON_HEADERS
 surfcast_precompiled_headers(surfcast_module_headers HEADERS ${SURFCAST_COMMON_HEADERS})
 
 # Sanitized builds do not optimize, which halves their compile time, but for modules that compute for most of the time
-# of the tests of input.
+# of the tests that read bytes of strangers.
 if(SURFCAST_SANITIZE)
   surfcast_precompiled_headers(surfcast_computing_module_headers HEADERS ${SURFCAST_COMMON_HEADERS} OPTIONS -O1)
 endif()

@@ -81,7 +81,7 @@ Bytes volumes(const TestFolder& folder) {
   return finished(*writer, folder / "whole.surf");
 }
 
-/// Needles with harmonics of the third degree.
+/// Needles with random harmonics up to a degree.
 gaussian::Gaussians needles(size_t count, int degree) {
   std::mt19937 random(3);
   const auto uniform = [&random](float low, float high) {
