@@ -7,21 +7,18 @@ cd "$(dirname "$0")/.."
 . cmake/parts.sh
 
 # Inputs that are checked in full rather than by a sample.
-export SURFCAST_DAMAGED_INPUTS=10000
-export SURFCAST_STOPPED_BUILDS=40
-export SURFCAST_SOAK_SECONDS=60
-export SURFCAST_SHADER_INTERVAL=1
+in_full=(SURFCAST_DAMAGED_INPUTS=10000 SURFCAST_MUTATIONS=1000000 SURFCAST_STOPPED_BUILDS=40 SURFCAST_SOAK_SECONDS=60)
+export "${in_full[@]}"
 
 runs=${SURFCAST_NIGHTLY_RUNS:-20}
 load=${SURFCAST_NIGHTLY_LOAD:-4}
 
 # The whole suite many times, with `load` tests at once on each processor: the tests are each other's load. ctest
 # repeats each until it fails. Inputs are sampled, as in `make test`.
-under_load() {
-  env --unset=SURFCAST_DAMAGED_INPUTS --unset=SURFCAST_STOPPED_BUILDS --unset=SURFCAST_SOAK_SECONDS \
-    --unset=SURFCAST_SHADER_INTERVAL \
-    ctest --preset release "-j$(($(nproc) * load))" --repeat "until-fail:$runs"
-}
+under_load() (
+  unset "${in_full[@]%=*}"
+  ctest --preset release "-j$(($(nproc) * load))" --repeat "until-fail:$runs"
+)
 
 part 'packages' make packages lint-packages sanitizer-packages
 part 'format' make format-check

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "gaussian/gaussian_block.h"
+#include "gaussian/random_gaussians.h"
 #include "kinds/kind_table.h"
 #include "model/damage.h"
 #include "model/format.h"
@@ -81,31 +82,13 @@ Bytes volumes(const TestFolder& folder) {
   return finished(*writer, folder / "whole.surf");
 }
 
-/// Needles with random harmonics up to a degree.
-gaussian::Gaussians needles(size_t count, int degree) {
-  std::mt19937 random(3);
-  const auto uniform = [&random](float low, float high) {
-    return std::uniform_real_distribution<float>(low, high)(random);
-  };
-  gaussian::Gaussians needles;
-  for (size_t i = 0; i < count; ++i) {
-    needles.positions.emplace_back(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
-    const float length = uniform(0.05F, 0.25F);
-    needles.scales.emplace_back(length, 0.05F * length, 0.05F * length);
-    needles.rotations.push_back(
-        glm::normalize(glm::quat(uniform(0.1F, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))));
-    needles.opacities.push_back(uniform(0.3F, 0.9F));
-    for (size_t k = 0; k < 3 * gaussian::harmonics_of(degree); ++k) needles.harmonics.push_back(uniform(-0.5F, 0.5F));
-  }
-  return needles;
-}
-
 Bytes gaussians(const TestFolder& folder) {
   model::ModelSchema schema;
   schema.color_bits = 8;
   schema.harmonics_degree = 3;
   Result<model::ModelWriter> writer = model::ModelWriter::create(folder / "whole.surf", schema);
-  EXPECT_TRUE(writer->add(gaussian::encode_gaussians(needles(200, 3), {.degree = 3}), ldc::OctreeKey(), {}));
+  EXPECT_TRUE(
+      writer->add(gaussian::encode_gaussians(gaussian::random_gaussians(200, 3), {.degree = 3}), ldc::OctreeKey(), {}));
   return finished(*writer, folder / "whole.surf");
 }
 

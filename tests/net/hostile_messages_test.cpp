@@ -1,5 +1,4 @@
 #include <boost/asio/io_context.hpp>
-#include <cstdlib>
 #include <memory>
 #include <random>
 #include <set>
@@ -12,6 +11,7 @@
 #include "net/conversation.h"
 #include "net/sample_requests.h"
 #include "service/fake_models.h"
+#include "support/sample_size.h"
 
 namespace surfcast::net {
 namespace {
@@ -174,10 +174,8 @@ TEST_F(HostileMessagesTest, EveryTruncationOfEveryKindIsSurvived) {
   }
 }
 
-/// SURFCAST_MUTATIONS says how many: `make nightly` tries a million.
 TEST_F(HostileMessagesTest, MutatedMessagesAreSurvived) {
-  const char* wanted = std::getenv("SURFCAST_MUTATIONS");
-  const int count = wanted == nullptr ? 50'000 : std::atoi(wanted);
+  const int count = testing::sample_size("SURFCAST_MUTATIONS", 50'000);
   Mutator mutator(encoded_samples());
   for (int i = 0; i < count;) {
     begin_conversation();

@@ -1,6 +1,6 @@
 // Every shader that the renderer can ask for goes through the Khronos reference compiler: a driver may accept what GLSL
 // does not allow. No GL is needed. A stand-in for the driver records the text of each shader as the driver would get
-// it. The compiler gets a sample of them, and all of them in `make nightly`.
+// it.
 
 #include <filesystem>
 #include <fstream>
@@ -19,7 +19,6 @@
 #include "kinds/kind_table.h"
 #include "render/programs.h"
 #include "shared/frame_layout.h"
-#include "support/sample_size.h"
 
 namespace surfcast::testing {
 namespace {
@@ -255,15 +254,12 @@ std::string defines_of(const std::string& text) {
   return defines;
 }
 
-/// A folder with a file for each shader of a sample, by number. Neighbours in the order of texts are alike.
+/// A folder with a file for each shader, by number.
 class ShaderFolder {
  public:
   ShaderFolder() : path_(fs::path(::testing::TempDir()) / ("surfcast_shaders_" + std::to_string(getpid()))) {
     fs::create_directories(path_);
-    const auto interval = static_cast<size_t>(sample_size("SURFCAST_SHADER_INTERVAL", 3));
-    size_t number = 0;
     for (const std::string& text : all_shaders()) {
-      if (number++ % interval != 0) continue;
       files_.push_back(path_ / (std::to_string(texts_.size()) + ".comp"));
       std::ofstream(files_.back()) << text;
       texts_.push_back(text);
