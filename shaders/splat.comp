@@ -50,7 +50,7 @@ layout(std430, binding = SURFCAST_BIND_SHOWN_DEPTHS) writeonly buffer ShownDepth
 #include "include/draw_lane.glsl"
 #include "include/write_rows.glsl"
 
-void write_column(int c, Light light, Rows front, ivec2 first) {
+void write_column(Light light, Rows front, Rows farthest_shown, ivec2 first) {
   for (int i = 0; i < SURFCAST_ROWS; ++i) {
     ivec2 at = first + ivec2(0, i);
     if (any(greaterThanEqual(at, frame.region.zw))) continue;
@@ -59,8 +59,20 @@ void write_column(int c, Light light, Rows front, ivec2 first) {
     fronts[at.y * frame.region.z + at.x] = ROW(front, i);
 #endif
 #ifdef SURFCAST_KEEPS_DEPTHS
-    shown_depths[at.y * frame.region.z + at.x] = vec2(ROW(front, i), ROW(opaque[c], i));
+    shown_depths[at.y * frame.region.z + at.x] = vec2(ROW(front, i), ROW(farthest_shown, i));
 #endif
+  }
+}
+
+// Writes the first `count` columns of a lane. The compiler does not know the length of this loop, so it does not repeat
+// the code for each column.
+void write_columns(int count, LightColumns light, Columns front, ivec2 first) {
+  for (int c = 0; c < count; ++c) {
+    Rows farthest_shown = Rows(0.0);
+#ifdef SURFCAST_KEEPS_DEPTHS
+    farthest_shown = rows_of(opaque, c);
+#endif
+    write_column(light_of(light, c), rows_of(front, c), farthest_shown, first + ivec2(c, 0));
   }
 }
 
@@ -81,8 +93,7 @@ void main() {
   Columns front;
   LightColumns light;
   draw_together(tile, SURFCAST_COLUMNS, vec2(frame.region.xy + local) + 0.5, front, light);
-  if (own_share() != 0u) return;
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) write_column(c, light[c], front[c], local + ivec2(c, 0));
+  write_columns(own_share() == 0u ? SURFCAST_COLUMNS : 0, light, front, local);
 }
 #else
 // The state of a lane.
@@ -131,7 +142,7 @@ void hand_over_unfinished(LaneState state) {
   // (A loop, because most tiles have none: lanes run through all branches.)
   for (; unfinished_columns != 0u; unfinished_columns &= unfinished_columns - 1u) {
     int c = findLSB(unfinished_columns);
-    hand_over(state.index, uint(c), state.limit[c], state.light[c]);
+    hand_over(state.index, uint(c), rows_of(state.limit, c), light_of(state.light, c));
   }
 }
 #endif
@@ -162,9 +173,7 @@ void main() {
     ++state.layer;
     if (more && state.layer < kMaxLayers) continue;
 #endif
-    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-      if (c < state.columns) write_column(c, state.light[c], state.front[c], state.local + ivec2(c, 0));
-    }
+    write_columns(state.columns, state.light, state.front, state.local);
     drawing = begin(state, false);
   }
 }

@@ -153,28 +153,31 @@ void main() {
 #endif
   uvec2 part = part_at(index);
   ivec2 corner = corner_of(part.x);
-  ivec2 places[SURFCAST_COLUMNS];
-  int count = bitCount(part.y);
+  ivec2 first = corner + place_in_tile(findLSB(part.y));
   uint mask = part.y;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    places[c] = c < count ? corner + place_in_tile(findLSB(mask)) : places[0];
-    column_places[c] = vec2(places[c] - places[0]);
+    column_places[c] = mask != 0u ? vec2(corner + place_in_tile(findLSB(mask)) - first) : vec2(0.0);
 #ifdef SURFCAST_SELECTS
-    column_bits[c] = c < count ? mask & (~mask + 1u) : 0u;
+    column_bits[c] = mask & (~mask + 1u);
 #endif
     mask &= mask - 1u;
   }
   Columns limit;
   LightColumns light;
-  draw_samples(lists_of_tile(part.x), count, vec2(frame.region.xy + places[0]) + 0.5, limit, light);
+  draw_samples(lists_of_tile(part.x), bitCount(part.y), vec2(frame.region.xy + first) + 0.5, limit, light);
 #ifdef SURFCAST_TOGETHER
   if (own_share() != 0u) return;
 #endif
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    if (c < count) write_mean(light[c], places[c]);
+  // (The compiler does not know the length of this loop, so it does not repeat the code for each column.)
+  mask = part.y;
+  for (int c = 0; mask != 0u; ++c) {
+    int bit = findLSB(mask);
+    mask &= mask - 1u;
+    Light samples = light_of(light, c);
+    write_mean(samples, corner + place_in_tile(bit));
 #if defined(SURFCAST_SELECTS) && !defined(SURFCAST_LARGE) && !defined(SURFCAST_TOGETHER)
-    if (!any_of(unfinished_rows(light[c], limit[c], 1))) continue;
-    hand_over(part.x, uint(findLSB(column_bits[c])), limit[c], light[c]);
+    Rows samples_limit = rows_of(limit, c);
+    if (any_of(unfinished_rows(samples, samples_limit, 1))) hand_over(part.x, uint(bit), samples_limit, samples);
 #endif
   }
 }

@@ -33,6 +33,22 @@ Light light_zero() {
 #endif
 }
 
+// The light of column c (see rows_of).
+Light light_of(LightColumns columns, int c) {
+  Light light = columns[0];
+  for (int i = 1; i < SURFCAST_COLUMNS; ++i) {
+    light.red = c == i ? columns[i].red : light.red;
+    light.green = c == i ? columns[i].green : light.green;
+    light.blue = c == i ? columns[i].blue : light.blue;
+    light.transmittance = c == i ? columns[i].transmittance : light.transmittance;
+#ifdef SURFCAST_EYE_DOME
+    light.depth = c == i ? columns[i].depth : light.depth;
+    light.opaque = c == i ? columns[i].opaque : light.opaque;
+#endif
+  }
+  return light;
+}
+
 // A headlight: light falls along the viewing rays. The normal is the normalised mean over the fragments of the pixel.
 Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {
   vec2 first = ray_of_pixel(pixel);

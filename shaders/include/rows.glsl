@@ -27,6 +27,14 @@ BoolRows both(BoolRows a, BoolRows b) { return a && b; }
 #define Columns Rows[SURFCAST_COLUMNS]
 #define BoolColumns BoolRows[SURFCAST_COLUMNS]
 
+// The numbers of column c. Not columns[c]: for an index that is not constant, software GL compiles a tree of branches,
+// and a kernel takes seconds longer to compile.
+Rows rows_of(Columns columns, int c) {
+  Rows rows = columns[0];
+  for (int i = 1; i < SURFCAST_COLUMNS; ++i) rows = c == i ? columns[i] : rows;
+  return rows;
+}
+
 #ifdef SURFCAST_SUPERSAMPLED
 // A column is a pixel and its rows are samples: a rotated grid, see SURFCAST_SILHOUETTE_VARIANCE. The numbers -3, -1, 1
 // and 3 have a variance of 5.
