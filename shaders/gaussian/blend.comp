@@ -42,14 +42,106 @@ struct Row {
   ivec4 passed;  // surfaces that have been blended
   vec4 next;     // depth of the next one
 #ifdef SURFCAST_KEEPS
-  Filling filling[4];
-  vec4 weight;  // of the last fragments
+  // The layers that are being filled (see Filling).
+  ivec4 number;
+  vec4 red_before;
+  vec4 green_before;
+  vec4 blue_before;
+  vec4 clear_before;
+  vec4 depth;
+#endif
+#endif
+};
+#define Rows Row[SURFCAST_BLEND_ROWS]
+
+// The pixels of a lane are numbered row by row. Their number for a loop that stays a loop (see columns_of_loop in
+// include/rows.glsl).
+int pixels_of_loop() { return frame.region.z > 0 ? 4 * SURFCAST_BLEND_ROWS : 0; }
+ivec2 place_of(int k) { return ivec2(k % 4, k / 4); }
+
+// One pixel of a row.
+struct Pixel {
+  vec3 color;
+  float clear;
+#ifdef SURFCAST_KEEPS_FRONTS
+  float front;
+#endif
+#ifdef SURFCAST_LAYERS
+  int passed;
+  float next;
+#ifdef SURFCAST_KEEPS
+  Filling filling;
 #endif
 #endif
 };
 
-// `dx`, `dy`: offsets of the row's pixels from the centre.
-void blend(ScreenGaussian g, vec4 dx, float dy, inout Row row) {
+// The row of pixel k, selected (see rows_of in include/rows.glsl).
+#define PICK(member) row.member = r == k / 4 ? rows[r].member : row.member;
+Row row_of(Rows rows, int k) {
+  Row row = rows[0];
+  for (int r = 1; r < SURFCAST_BLEND_ROWS; ++r) {
+    PICK(red) PICK(green) PICK(blue) PICK(clear)
+#ifdef SURFCAST_KEEPS_FRONTS
+    PICK(front)
+#endif
+#ifdef SURFCAST_LAYERS
+    PICK(passed) PICK(next)
+#ifdef SURFCAST_KEEPS
+    PICK(number) PICK(red_before) PICK(green_before) PICK(blue_before) PICK(clear_before) PICK(depth)
+#endif
+#endif
+  }
+  return row;
+}
+
+Pixel pixel_of(Rows rows, int k) {
+  Row row = row_of(rows, k);
+  int x = k % 4;
+  Pixel pixel;
+  pixel.color = vec3(row.red[x], row.green[x], row.blue[x]);
+  pixel.clear = row.clear[x];
+#ifdef SURFCAST_KEEPS_FRONTS
+  pixel.front = row.front[x];
+#endif
+#ifdef SURFCAST_LAYERS
+  pixel.passed = row.passed[x];
+  pixel.next = row.next[x];
+#ifdef SURFCAST_KEEPS
+  vec3 before = vec3(row.red_before[x], row.green_before[x], row.blue_before[x]);
+  pixel.filling = Filling(row.number[x], before, row.clear_before[x], row.depth[x]);
+#endif
+#endif
+  return pixel;
+}
+
+#define PUT(member, value) rows[r].member = mix(rows[r].member, value, own);
+void set_pixel(inout Rows rows, int k, Pixel pixel) {
+  for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) {
+    bvec4 own = equal(ivec4(k - 4 * r), ivec4(0, 1, 2, 3));
+    PUT(red, vec4(pixel.color.r))
+    PUT(green, vec4(pixel.color.g))
+    PUT(blue, vec4(pixel.color.b))
+    PUT(clear, vec4(pixel.clear))
+#ifdef SURFCAST_KEEPS_FRONTS
+    PUT(front, vec4(pixel.front))
+#endif
+#ifdef SURFCAST_LAYERS
+    PUT(passed, ivec4(pixel.passed))
+    PUT(next, vec4(pixel.next))
+#ifdef SURFCAST_KEEPS
+    PUT(number, ivec4(pixel.filling.number))
+    PUT(red_before, vec4(pixel.filling.color.r))
+    PUT(green_before, vec4(pixel.filling.color.g))
+    PUT(blue_before, vec4(pixel.filling.color.b))
+    PUT(clear_before, vec4(pixel.filling.clear))
+    PUT(depth, vec4(pixel.filling.depth))
+#endif
+#endif
+  }
+}
+
+// `dx`, `dy`: offsets of the row's pixels from the centre. `depth`: of the Gaussian, where it is used.
+void blend(ScreenGaussian g, float depth, vec4 dx, float dy, inout Row row) {
   vec4 u = g.factor.x * dx + g.factor.y * dy;
   float w = g.factor.z * dy;
   vec4 power = g.log2_opacity - w * w - u * u;
@@ -65,7 +157,7 @@ void blend(ScreenGaussian g, vec4 dx, float dy, inout Row row) {
   row.green += g.color.g * weight;
   row.blue += g.color.b * weight;
 #ifdef SURFCAST_KEEPS
-  row.weight = weight;
+  row.depth += weight * depth;
 #endif
   row.clear = mix(left, -abs(row.clear), full);
 }
@@ -76,73 +168,51 @@ int state_of(ivec2 at) { return at.y * frame.region.z + at.x; }
 bool inside(ivec2 at) { return at.x < frame.region.z && at.y < frame.region.w; }
 
 #ifdef SURFCAST_LAYERS
-// Blends the surfaces that are nearer than `depth`.
-void blend_nearer(ivec2 at, float depth, inout Row row) {
-  bvec4 nearer = lessThan(row.next, vec4(depth));
-  for (int x = 0; x < 4; ++x) {
-    if (!nearer[x]) continue;
-    vec3 color = vec3(row.red[x], row.green[x], row.blue[x]);
-    float clear = row.clear[x];
-    int passed = row.passed[x];
+uint bits_of_row(bvec4 row, int r) {
+  uvec4 bits = uvec4(row) << (uvec4(0u, 1u, 2u, 3u) + uint(4 * r));
+  return bits.x | bits.y | bits.z | bits.w;
+}
+
 #ifdef SURFCAST_KEEPS
-    if (clear > 0.0) end_layer(at + ivec2(x, 0), row.filling[x], color, clear);
-    float before = clear;
+// The pixels whose layer ends before anything is added to it.
+uint full_pixels(Row row, int r) {
+  uint full = bits_of_row(greaterThanEqual(row.clear_before - row.clear, vec4(kLayerLight)), r);
+  uint open = bits_of_row(greaterThan(row.clear, vec4(0.0)), r);
+  return full & open & bits_of_row(lessThan(row.number, ivec4(SURFCAST_LAYERS_KEPT - 1)), r);
+}
 #endif
-    if (clear > 0.0) blend_surfaces(at + ivec2(x, 0), depth, float(SURFCAST_TRAINED_CLEAR), passed, color, clear);
+
+// The pixels with a surface that is nearer than `depth`, or with a full layer. They are few.
+uint pixels_before(Rows rows, float depth) {
+  uint pixels = 0u;
+  for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) {
+    pixels |= bits_of_row(lessThan(rows[r].next, vec4(depth)), r);
+#ifdef SURFCAST_KEEPS
+    pixels |= full_pixels(rows[r], r);
+#endif
+  }
+  return pixels;
+}
+
+// Blends the surfaces of a pixel that are nearer than `depth`.
+void blend_nearer(ivec2 at, float depth, inout Pixel pixel) {
+  float before = pixel.clear;
+#ifdef SURFCAST_KEEPS
+  if (before > 0.0) end_layer(at, pixel.filling, pixel.color, pixel.clear);
+#endif
+  if (pixel.next >= depth) return;
+  if (before > 0.0) {
+    blend_surfaces(at, depth, float(SURFCAST_TRAINED_CLEAR), pixel.passed, pixel.color, pixel.clear);
+#ifdef SURFCAST_KEEPS
+    pixel.filling.depth += (before - abs(pixel.clear)) * pixel.next;
+    end_layer(at, pixel.filling, pixel.color, pixel.clear);
+#endif
+  }
 #ifdef SURFCAST_KEEPS_FRONTS
-    row.front[x] = pass_front(row.front[x], row.clear[x], clear, 1.0 / row.next[x]);
+  pixel.front = pass_front(pixel.front, before, pixel.clear, 1.0 / pixel.next);
 #endif
-#ifdef SURFCAST_KEEPS
-    if (before > 0.0) row.filling[x].depth += (before - abs(clear)) * row.next[x];
-    if (before > 0.0) end_layer(at + ivec2(x, 0), row.filling[x], color, clear);
-#endif
-    row.red[x] = color.r;
-    row.green[x] = color.g;
-    row.blue[x] = color.b;
-    row.passed[x] = passed;
-    row.next[x] = clear > 0.0 ? surface_depth(at + ivec2(x, 0), passed) : kNoSurface;
-    row.clear[x] = clear;
-  }
+  pixel.next = pixel.clear > 0.0 ? surface_depth(at, pixel.passed) : kNoSurface;
 }
-
-// `row` as it has been loaded.
-void find_surfaces(ivec2 at, inout Row row) {
-  for (int x = 0; x < 4; ++x) {
-    ivec2 pixel = at + ivec2(x, 0);
-    int passed;
-    row.clear[x] = unpack_state(row.clear[x], passed);
-    row.passed[x] = passed;
-    row.next[x] = inside(pixel) ? surface_depth(pixel, passed) : kNoSurface;
-#ifdef SURFCAST_KEEPS
-    vec3 color = vec3(row.red[x], row.green[x], row.blue[x]);
-    row.filling[x] = first_filling();
-    if (span.y > 0u && inside(pixel)) row.filling[x] = stored_filling(pixel, color, row.clear[x]);
-#endif
-  }
-}
-
-#ifdef SURFCAST_KEEPS
-// After fragments at this depth have been blended; `before`: the row without them.
-void keep_fragments(ivec2 at, Row before, float depth, inout Row row) {
-  for (int x = 0; x < 4; ++x) {
-    ivec2 pixel = at + ivec2(x, 0);
-    if (row.weight[x] <= 0.0 || !inside(pixel)) continue;
-    vec3 color = vec3(before.red[x], before.green[x], before.blue[x]);
-    fill_layer(pixel, row.filling[x], color, before.clear[x], row.weight[x], depth);
-  }
-}
-
-// `row` behind all Gaussians, or at the end of a round.
-void keep_row(ivec2 at, inout Row row, bool finished) {
-  for (int x = 0; x < 4; ++x) {
-    ivec2 pixel = at + ivec2(x, 0);
-    if (!inside(pixel)) continue;
-    vec3 color = vec3(row.red[x], row.green[x], row.blue[x]);
-    if (finished) finish_layers(pixel, row.filling[x], color, row.clear[x], row.passed[x]);
-    else store_layer(pixel, row.filling[x], color, row.clear[x]);
-  }
-}
-#endif
 #endif
 
 #ifdef SURFCAST_KEEPS_FRONTS
@@ -152,52 +222,51 @@ void pass_fronts(vec4 before, float depth, inout Row row) {
 }
 #endif
 
-Row load_row(ivec2 at) {
-  Row row;
-  row.red = row.green = row.blue = vec4(0.0);
-  row.clear = vec4(1.0);
+Pixel begin_pixel(ivec2 at) {
+  vec4 state = vec4(0.0, 0.0, 0.0, inside(at) ? 1.0 : -1.0);
+  bool stored = span.y > 0u && inside(at);
+  if (stored) state = states[state_of(at)];
+  Pixel pixel;
+  pixel.color = state.rgb;
+  pixel.clear = state.a;
 #ifdef SURFCAST_KEEPS_FRONTS
-  row.front = vec4(0.0);
+  pixel.front = stored ? fronts[state_of(at)] : 0.0;
 #endif
-  if (span.y == 0u) return row;
-  for (int x = 0; x < 4; ++x) {
-    vec4 state = inside(at + ivec2(x, 0)) ? states[state_of(at + ivec2(x, 0))] : vec4(0.0, 0.0, 0.0, -1.0);
-    row.red[x] = state.r;
-    row.green[x] = state.g;
-    row.blue[x] = state.b;
-    row.clear[x] = state.a;
-#ifdef SURFCAST_KEEPS_FRONTS
-    if (inside(at + ivec2(x, 0))) row.front[x] = fronts[state_of(at + ivec2(x, 0))];
+#ifdef SURFCAST_LAYERS
+  pixel.clear = unpack_state(state.a, pixel.passed);
+  pixel.next = inside(at) ? surface_depth(at, pixel.passed) : kNoSurface;
+#ifdef SURFCAST_KEEPS
+  pixel.filling = first_filling();
+  if (stored) pixel.filling = stored_filling(at, pixel.color, pixel.clear);
 #endif
-  }
-  return row;
+#endif
+  return pixel;
 }
 
-void store_row(ivec2 at, Row row, bool finished) {
-  for (int x = 0; x < 4; ++x) {
-    ivec2 pixel = at + ivec2(x, 0);
-    if (!inside(pixel)) continue;
-    vec3 color = vec3(row.red[x], row.green[x], row.blue[x]);
-#ifdef SURFCAST_LAYERS
+// Behind all Gaussians, or at the end of a round.
+void end_pixel(ivec2 at, Pixel pixel, bool finished) {
 #ifdef SURFCAST_KEEPS
-    if (finished) continue;
+  if (finished) finish_layers(at, pixel.filling, pixel.color, pixel.clear, pixel.passed);
+  else store_layer(at, pixel.filling, pixel.color, pixel.clear);
 #endif
-    vec4 behind = finished ? behind_gaussians(pixel, row.passed[x]) : vec4(0.0);
-    if (finished) write_codes_before(pixel, color, abs(row.clear[x]), behind);
+#ifdef SURFCAST_LAYERS
+#ifndef SURFCAST_KEEPS
+  vec4 behind = finished ? behind_gaussians(at, pixel.passed) : vec4(0.0);
+  if (finished) write_codes_before(at, pixel.color, abs(pixel.clear), behind);
 #ifdef SURFCAST_KEEPS_FRONTS
-    float through = row.clear[x] * behind.a;
-    float front = pass_front(row.front[x], row.clear[x], through, 1.0 / surface_depth(pixel, row.passed[x]));
-    fronts[state_of(pixel)] = finished ? end_front(front, through) : row.front[x];
+  float through = pixel.clear * behind.a;
+  float front = pass_front(pixel.front, pixel.clear, through, 1.0 / surface_depth(at, pixel.passed));
+  fronts[state_of(at)] = finished ? end_front(front, through) : pixel.front;
 #endif
-    if (!finished) states[state_of(pixel)] = vec4(color, pack_state(row.clear[x], row.passed[x]));
+#endif
+  if (!finished) states[state_of(at)] = vec4(pixel.color, pack_state(pixel.clear, pixel.passed));
 #else
-    if (finished) write_codes(pixel, color, abs(row.clear[x]));
-    else states[state_of(pixel)] = vec4(color, row.clear[x]);
+  if (finished) write_codes(at, pixel.color, abs(pixel.clear));
+  else states[state_of(at)] = vec4(pixel.color, pixel.clear);
 #ifdef SURFCAST_KEEPS_FRONTS
-    fronts[state_of(pixel)] = finished ? end_front(row.front[x], row.clear[x]) : row.front[x];
+  fronts[state_of(at)] = finished ? end_front(pixel.front, pixel.clear) : pixel.front;
 #endif
 #endif
-  }
 }
 
 void main() {
@@ -208,11 +277,8 @@ void main() {
   ivec2 tile = ivec2(int(list.x) % frame.tiles.x, int(list.x) / frame.tiles.x);
   ivec2 at = 4 * tile + ivec2(0, int(lane % kShares) * SURFCAST_BLEND_ROWS);
   vec2 pixel = vec2(frame.region.xy + at) + 0.5;
-  Row rows[SURFCAST_BLEND_ROWS];
-  for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) rows[r] = load_row(at + ivec2(0, r));
-#ifdef SURFCAST_LAYERS
-  for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) find_surfaces(at + ivec2(0, r), rows[r]);
-#endif
+  Rows rows;
+  for (int k = 0; k < pixels_of_loop(); ++k) set_pixel(rows, k, begin_pixel(at + place_of(k)));
 #ifdef SURFCAST_LAYERS
   uint last = min(list.z, span.y + uint(SURFCAST_LAYERED_GAUSSIAN_ROUND));
 #else
@@ -222,44 +288,35 @@ void main() {
     int place = int(texelFetch(lists, int(list.y + i)).x);
     ScreenGaussian g = decode_gaussian(texelFetch(records, SURFCAST_GAUSSIAN_RECORD * place),
                                        texelFetch(records, SURFCAST_GAUSSIAN_RECORD * place + 1));
+    float depth = 0.0;
 #if defined(SURFCAST_LAYERS) || defined(SURFCAST_KEEPS_FRONTS)
-    float depth = uintBitsToFloat(texelFetch(keys, place).x);
+    depth = uintBitsToFloat(texelFetch(keys, place).x);
 #endif
 #ifdef SURFCAST_LAYERS
-    for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) blend_nearer(at + ivec2(0, r), depth, rows[r]);
+    for (uint left = pixels_before(rows, depth); left != 0u; left &= left - 1u) {
+      int k = findLSB(left);
+      Pixel one = pixel_of(rows, k);
+      blend_nearer(at + place_of(k), depth, one);
+      set_pixel(rows, k, one);
+    }
 #endif
     vec4 dx = pixel.x - g.centre.x + vec4(0.0, 1.0, 2.0, 3.0);
     float dy = pixel.y - g.centre.y;
-#ifdef SURFCAST_KEEPS
+    float clear = -1.0;
     for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) {
-      Row before = rows[r];
-      blend(g, dx, dy + float(r), rows[r]);
-      keep_fragments(at + ivec2(0, r), before, depth, rows[r]);
+#ifdef SURFCAST_KEEPS_FRONTS
+      vec4 before = rows[r].clear;
+#endif
+      blend(g, depth, dx, dy + float(r), rows[r]);
+#ifdef SURFCAST_KEEPS_FRONTS
+      pass_fronts(before, depth, rows[r]);
+#endif
+      clear = max(clear, largest_clear(rows[r]));
     }
-    float clear = largest_clear(rows[0]);
-    for (int r = 1; r < SURFCAST_BLEND_ROWS; ++r) clear = max(clear, largest_clear(rows[r]));
-#else
-#ifdef SURFCAST_KEEPS_FRONTS
-    vec4 before[SURFCAST_BLEND_ROWS];
-    for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) before[r] = rows[r].clear;
-#endif
-    blend(g, dx, dy, rows[0]);
-    float clear = largest_clear(rows[0]);
-#if SURFCAST_BLEND_ROWS == 4
-    blend(g, dx, dy + 1.0, rows[1]);
-    blend(g, dx, dy + 2.0, rows[2]);
-    blend(g, dx, dy + 3.0, rows[3]);
-    clear = max(max(clear, largest_clear(rows[1])), max(largest_clear(rows[2]), largest_clear(rows[3])));
-#endif
-#ifdef SURFCAST_KEEPS_FRONTS
-    for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) pass_fronts(before[r], depth, rows[r]);
-#endif
-#endif
     if (clear < 0.0) break;
   }
   bool finished = last == list.z;
-#ifdef SURFCAST_KEEPS
-  for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) keep_row(at + ivec2(0, r), rows[r], finished);
-#endif
-  for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) store_row(at + ivec2(0, r), rows[r], finished);
+  for (int k = 0; k < pixels_of_loop(); ++k) {
+    if (inside(at + place_of(k))) end_pixel(at + place_of(k), pixel_of(rows, k), finished);
+  }
 }
