@@ -34,17 +34,16 @@ void clear_shared() {
 
 // Gives every lane the nearest surfaces and the largest weight of all lanes. Returns the farthest surface of the tile.
 float share_surfaces(inout Columns surface, inout float peak) {
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    for (int i = 0; i < SURFCAST_ROWS; ++i) {
-      atomicMax(shared_surfaces[shared_pixel(c, i)], floatBitsToUint(ROW(surface[c], i)));
-    }
+  for (int c = 0; c < columns_of_loop(); ++c) {
+    Rows own = rows_of(surface, c);
+    for (int i = 0; i < SURFCAST_ROWS; ++i) atomicMax(shared_surfaces[shared_pixel(c, i)], floatBitsToUint(ROW(own, i)));
   }
   atomicMax(shared_peak, floatBitsToUint(peak));
   barrier();
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    for (int i = 0; i < SURFCAST_ROWS; ++i) {
-      ROW(surface[c], i) = uintBitsToFloat(shared_surfaces[shared_pixel(c, i)]);
-    }
+  for (int c = 0; c < columns_of_loop(); ++c) {
+    Rows nearest;
+    for (int i = 0; i < SURFCAST_ROWS; ++i) ROW(nearest, i) = uintBitsToFloat(shared_surfaces[shared_pixel(c, i)]);
+    set_rows(surface, c, nearest);
   }
   peak = uintBitsToFloat(shared_peak);
   uint least = shared_surfaces[0];
@@ -53,15 +52,26 @@ float share_surfaces(inout Columns surface, inout float peak) {
   return uintBitsToFloat(least);
 }
 
+// b if `second`.
+FixedSum either(FixedSum a, FixedSum b, bool second) {
+  return FixedSum(second ? b.part : a.part, second ? b.low : a.low, second ? b.high : a.high);
+}
+
 void share_sums(inout ColumnSums sums) {
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-#define GIVE_SUM(name, number) give_sum(sums[c].name, number, c);
+  for (int c = 0; c < columns_of_loop(); ++c) {
+    PixelSums own = sums[0];
+#define PICK_SUM(name, number) own.name = either(own.name, sums[i].name, c == i);
+    for (int i = 1; i < SURFCAST_COLUMNS; ++i) { EACH_SUM(PICK_SUM) }
+#define GIVE_SUM(name, number) give_sum(own.name, number, c);
     EACH_SUM(GIVE_SUM)
   }
   barrier();
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-#define TAKE_SUM(name, number) take_sum(sums[c].name, number, c);
+  for (int c = 0; c < columns_of_loop(); ++c) {
+    PixelSums all = sums_zero();
+#define TAKE_SUM(name, number) take_sum(all.name, number, c);
     EACH_SUM(TAKE_SUM)
+#define PUT_SUM(name, number) sums[i].name = either(sums[i].name, all.name, c == i);
+    for (int i = 0; i < SURFCAST_COLUMNS; ++i) { EACH_SUM(PUT_SUM) }
   }
 }
 
