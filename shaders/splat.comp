@@ -64,8 +64,7 @@ void write_column(Light light, Rows front, Rows farthest_shown, ivec2 first) {
   }
 }
 
-// Writes the first `count` columns of a lane. The compiler does not know the length of this loop, so it does not repeat
-// the code for each column.
+// Writes the first `count` columns of a lane. The loop is not unrolled, because `count` is not constant.
 void write_columns(int count, LightColumns light, Columns front, ivec2 first) {
   for (int c = 0; c < count; ++c) {
     Rows farthest_shown = Rows(0.0);

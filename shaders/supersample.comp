@@ -168,7 +168,7 @@ void main() {
 #ifdef SURFCAST_TOGETHER
   if (own_share() != 0u) return;
 #endif
-  // (The compiler does not know the length of this loop, so it does not repeat the code for each column.)
+  // (The number of pixels is not constant, so that the loop is not unrolled.)
   mask = part.y;
   for (int c = 0; mask != 0u; ++c) {
     int bit = findLSB(mask);

@@ -25,10 +25,6 @@ struct Superquadric {
 const int kSearch = 18;  // steps of the golden section: places to 6e-4
 const int kBisect = 18;  // steps towards the hit
 
-// `steps`, hidden from the compiler. It would unroll the loops, and in software all lanes would run through all steps,
-// even where no ray hits.
-int not_unrolled(int steps) { return frame.region.z > 0 ? steps : 0; }
-
 Superquadric decode_superquadric(EllipsoidHit e, int place) {
   vec4 a = uintBitsToFloat(texelFetch(records, kRecord * place + 4));
   vec4 b = uintBitsToFloat(texelFetch(records, kRecord * place + 5));

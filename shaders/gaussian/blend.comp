@@ -54,9 +54,8 @@ struct Row {
 };
 #define Rows Row[SURFCAST_BLEND_ROWS]
 
-// The pixels of a lane are numbered row by row. Their number for a loop that stays a loop (see columns_of_loop in
-// include/rows.glsl).
-int pixels_of_loop() { return frame.region.z > 0 ? 4 * SURFCAST_BLEND_ROWS : 0; }
+// The pixels of a lane are numbered row by row.
+const int kPixels = 4 * SURFCAST_BLEND_ROWS;
 ivec2 place_of(int k) { return ivec2(k % 4, k / 4); }
 
 // One pixel of a row.
@@ -278,7 +277,7 @@ void main() {
   ivec2 at = 4 * tile + ivec2(0, int(lane % kShares) * SURFCAST_BLEND_ROWS);
   vec2 pixel = vec2(frame.region.xy + at) + 0.5;
   Rows rows;
-  for (int k = 0; k < pixels_of_loop(); ++k) set_pixel(rows, k, begin_pixel(at + place_of(k)));
+  for (int k = 0; k < not_unrolled(kPixels); ++k) set_pixel(rows, k, begin_pixel(at + place_of(k)));
 #ifdef SURFCAST_LAYERS
   uint last = min(list.z, span.y + uint(SURFCAST_LAYERED_GAUSSIAN_ROUND));
 #else
@@ -316,7 +315,7 @@ void main() {
     if (clear < 0.0) break;
   }
   bool finished = last == list.z;
-  for (int k = 0; k < pixels_of_loop(); ++k) {
+  for (int k = 0; k < not_unrolled(kPixels); ++k) {
     if (inside(at + place_of(k))) end_pixel(at + place_of(k), pixel_of(rows, k), finished);
   }
 }

@@ -249,14 +249,13 @@ Pixel begin_pixel(ivec2 at) {
 
 void end_pixel(Pixel pixel, ivec2 at, bool finished) {
 #ifdef SURFCAST_EXACT
+  // Among surfaces, blending a fragment is long code.
 #ifdef SURFCAST_LAYERS
-  // The compiler does not know the length of this loop, so it does not repeat the code for each fragment.
   const int kAtOnce = 1;
 #else
   const int kAtOnce = SURFCAST_EXACT_SORTED;
 #endif
-  int waiting = frame.region.z > 0 ? SURFCAST_EXACT_SORTED : 0;
-  for (int k = 0; k < waiting; k += kAtOnce) {
+  for (int k = 0; k < not_unrolled(SURFCAST_EXACT_SORTED); k += kAtOnce) {
     for (int i = 0; i < kAtOnce; ++i) {
       blend(pixel.waiting[i].depth, unpack_light(pixel.waiting[i].light), pixel);
     }
@@ -312,9 +311,7 @@ void main() {
     draw(g, first);
     draw(g, second);
   }
-  // (As the loop in end_pixel.)
-  int pixels = frame.region.z > 0 ? kPixels : 0;
-  for (int k = 0; k < pixels; ++k) {
+  for (int k = 0; k < not_unrolled(kPixels); ++k) {
     if (k == 1) first = second;
     end_pixel(first, at + ivec2(k, 0), last == list.z);
   }

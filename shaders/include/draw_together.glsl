@@ -34,13 +34,15 @@ void clear_shared() {
 
 // Gives every lane the nearest surfaces and the largest weight of all lanes. Returns the farthest surface of the tile.
 float share_surfaces(inout Columns surface, inout float peak) {
-  for (int c = 0; c < columns_of_loop(); ++c) {
+  for (int c = 0; c < not_unrolled(SURFCAST_COLUMNS); ++c) {
     Rows own = rows_of(surface, c);
-    for (int i = 0; i < SURFCAST_ROWS; ++i) atomicMax(shared_surfaces[shared_pixel(c, i)], floatBitsToUint(ROW(own, i)));
+    for (int i = 0; i < SURFCAST_ROWS; ++i) {
+      atomicMax(shared_surfaces[shared_pixel(c, i)], floatBitsToUint(ROW(own, i)));
+    }
   }
   atomicMax(shared_peak, floatBitsToUint(peak));
   barrier();
-  for (int c = 0; c < columns_of_loop(); ++c) {
+  for (int c = 0; c < not_unrolled(SURFCAST_COLUMNS); ++c) {
     Rows nearest;
     for (int i = 0; i < SURFCAST_ROWS; ++i) ROW(nearest, i) = uintBitsToFloat(shared_surfaces[shared_pixel(c, i)]);
     set_rows(surface, c, nearest);
@@ -58,7 +60,7 @@ FixedSum either(FixedSum a, FixedSum b, bool second) {
 }
 
 void share_sums(inout ColumnSums sums) {
-  for (int c = 0; c < columns_of_loop(); ++c) {
+  for (int c = 0; c < not_unrolled(SURFCAST_COLUMNS); ++c) {
     PixelSums own = sums[0];
 #define PICK_SUM(name, number) own.name = either(own.name, sums[i].name, c == i);
     for (int i = 1; i < SURFCAST_COLUMNS; ++i) { EACH_SUM(PICK_SUM) }
@@ -66,7 +68,7 @@ void share_sums(inout ColumnSums sums) {
     EACH_SUM(GIVE_SUM)
   }
   barrier();
-  for (int c = 0; c < columns_of_loop(); ++c) {
+  for (int c = 0; c < not_unrolled(SURFCAST_COLUMNS); ++c) {
     PixelSums all = sums_zero();
 #define TAKE_SUM(name, number) take_sum(all.name, number, c);
     EACH_SUM(TAKE_SUM)

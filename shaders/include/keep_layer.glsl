@@ -18,12 +18,10 @@ void note_layer(int c, Rows number, Rows inverse_depth, Rows red, Rows green, Ro
   }
 }
 
-// Writes what was noted for all columns. `first`: the first pixel of the lane. The compiler does not know how often the
-// loop runs, so that it stays a loop: unrolled, it took a software driver most of a minute to compile.
+// Writes what was noted for all columns. `first`: the first pixel of the lane.
 void keep_layers(vec2 first) {
   ivec2 corner = ivec2(first) - frame.region.xy;
-  int pixels = frame.region.z > 0 ? SURFCAST_COLUMNS * SURFCAST_ROWS : 0;
-  for (int k = 0; k < pixels; ++k) {
+  for (int k = 0; k < not_unrolled(SURFCAST_COLUMNS * SURFCAST_ROWS); ++k) {
     uvec4 noted = next_layer[k];
     ivec2 at = corner + ivec2(k / SURFCAST_ROWS, k % SURFCAST_ROWS);
     bool kept = uintBitsToFloat(noted.x) > 0.0 && noted.w < uint(SURFCAST_LAYERS_KEPT);

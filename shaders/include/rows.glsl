@@ -35,13 +35,10 @@ Rows rows_of(Columns columns, int c) {
   return rows;
 }
 
+// Sets the numbers of column c.
 void set_rows(inout Columns columns, int c, Rows rows) {
   for (int i = 0; i < SURFCAST_COLUMNS; ++i) columns[i] = c == i ? rows : columns[i];
 }
-
-// The number of columns for a loop that stays a loop: the compiler does not know it. It repeats the code of a loop of
-// constant length for each column.
-int columns_of_loop() { return frame.region.z > 0 ? SURFCAST_COLUMNS : 0; }
 
 #ifdef SURFCAST_SUPERSAMPLED
 // A column is a pixel and its rows are samples: a rotated grid, see SURFCAST_SILHOUETTE_VARIANCE. The numbers -3, -1, 1
