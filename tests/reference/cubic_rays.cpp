@@ -13,8 +13,7 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kIntegrationSteps = 48;  ///< of the transfer function over a range of scalars
-constexpr int kSearchSteps = 64;       ///< of a segment in which a crossing is looked for
+constexpr int kSearchSteps = 64;  ///< of a segment in which a crossing is looked for
 
 /// The scalar at a place and its derivatives along i, j and k.
 struct Reconstructed {
@@ -39,27 +38,22 @@ Reconstructed reconstruct(const VolumeGrid& grid, const glm::dvec3& index) {
   const std::array<AxisWeights, 3> w{weights_at(index.x - base.x), weights_at(index.y - base.y),
                                      weights_at(index.z - base.z)};
   Reconstructed result;
-  for (int n = 0; n < 64; ++n) {
-    const glm::ivec3 t(n % 4, n / 4 % 4, n / 16);
-    const double sample = grid.at(glm::ivec3(base) + t - 1);
-    result.value += w[0].value[t.x] * w[1].value[t.y] * w[2].value[t.z] * sample;
-    result.gradient += sample * glm::dvec3(w[0].slope[t.x] * w[1].value[t.y] * w[2].value[t.z],
-                                           w[0].value[t.x] * w[1].slope[t.y] * w[2].value[t.z],
-                                           w[0].value[t.x] * w[1].value[t.y] * w[2].slope[t.z]);
+  for (int row = 0; row < 16; ++row) {
+    const int y = row % 4;
+    const int z = row / 4;
+    double value = 0;
+    double slope = 0;
+    for (int x = 0; x < 4; ++x) {
+      const double sample = grid.at(glm::ivec3(base) + glm::ivec3(x, y, z) - 1);
+      value += w[0].value[x] * sample;
+      slope += w[0].slope[x] * sample;
+    }
+    const double weight = w[1].value[y] * w[2].value[z];
+    result.value += weight * value;
+    result.gradient +=
+        glm::dvec3(weight * slope, w[1].slope[y] * w[2].value[z] * value, w[1].value[y] * w[2].slope[z] * value);
   }
   return result;
-}
-
-/// The mean over the scalars from a to b.
-Classified mean_between(const TransferFunction& transfer, double a, double b) {
-  Classified mean;
-  for (int i = 0; i < kIntegrationSteps; ++i) {
-    const Classified seen = transfer.at(std::lerp(a, b, (i + 0.5) / kIntegrationSteps));
-    mean.color += seen.extinction / kIntegrationSteps * seen.color;
-    mean.extinction += seen.extinction / kIntegrationSteps;
-  }
-  if (mean.extinction > 0) mean.color /= mean.extinction;
-  return mean;
 }
 
 /// A place on a ray.
@@ -196,7 +190,7 @@ class CubicRay {
     for (int i = 1; i <= parameters_.parts; ++i) {
       const double x = static_cast<double>(i) / parameters_.parts;
       const double after = scalar_between(a, b, x);
-      const Classified seen = mean_between(transfer_, before, after);
+      const Classified seen = transfer_.mean(before, after);
       const double middle = x - 0.5 / parameters_.parts;
       const double shade = parameters_.shaded ? headlight(glm::mix(a.gradient, b.gradient, middle), direction_) : 1;
       ray_.add(shade * seen.color, seen.extinction, span / parameters_.parts);

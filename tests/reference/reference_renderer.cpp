@@ -96,12 +96,12 @@ class TiledScene {
     const int y = window_.y0 + row * kTile;
     return intersect({x, y, x + kTile, y + kTile}, window_);
   }
-  /// Calls visit(surfel, pixels) for every surfel of a tile, with the pixels of the tile that it may touch.
+  /// Calls visit(surfel, pixels) for every surfel of a tile, with those of the given pixels of the tile that it may
+  /// touch.
   template <typename Visit>
-  void for_each_surfel(int column, int row, const Visit& visit) const {
-    const PixelRect tile = rect(column, row);
+  void for_each_surfel(int column, int row, const PixelRect& pixels, const Visit& visit) const {
     for (const uint32_t i : tiles_[static_cast<size_t>(row) * columns_ + column]) {
-      visit(surfels_[i], intersect(bounds_[i], tile));
+      visit(surfels_[i], intersect(bounds_[i], pixels));
     }
   }
 
@@ -176,13 +176,11 @@ class TilePass {
  public:
   TilePass(const TiledScene& scene, const geometry::CameraFrame& frame, const KernelParameters& kernel,
            const glm::dvec2& sample, int column, int row)
-      : scene_(scene),
-        frame_(frame),
-        kernel_(kernel),
-        sample_(sample),
-        column_(column),
-        row_(row),
-        rect_(scene.rect(column, row)) {}
+      : scene_(scene), kernel_(kernel), column_(column), row_(row), rect_(scene.rect(column, row)) {
+    for (int y = rect_.y0; y < rect_.y1; ++y) {
+      for (int x = rect_.x0; x < rect_.x1; ++x) rays_[index(x, y)] = frame.ray(glm::dvec2(x + 0.5, y + 0.5) + sample);
+    }
+  }
 
   /// Restricts drawing to the pixels marked in `mask`, which has the rows of the window.
   void leave_out_unless(const std::vector<bool>& mask) {
@@ -190,10 +188,12 @@ class TilePass {
   }
 
   void draw() {
-    for (int layer = 0; layer < kMaxLayers && !all_done(); ++layer) {
-      scene_.for_each_surfel(column_, row_, [&](const DrawnSurfel& s, const PixelRect& r) { see(s, r); });
-      scene_.for_each_surfel(column_, row_, [&](const DrawnSurfel& s, const PixelRect& r) { accumulate(s, r); });
-      for_each_pixel(rect_, [&](PixelState& p, const glm::dvec3& d, size_t) { composite(p, d, layer == 0); });
+    for (int layer = 0; layer < kMaxLayers; ++layer) {
+      const PixelRect open = bounds_of_open();
+      if (open.x0 >= open.x1) return;
+      scene_.for_each_surfel(column_, row_, open, [&](const DrawnSurfel& s, const PixelRect& r) { see(s, r); });
+      scene_.for_each_surfel(column_, row_, open, [&](const DrawnSurfel& s, const PixelRect& r) { accumulate(s, r); });
+      for_each_pixel(open, [&](PixelState& p, const glm::dvec3& d, size_t) { composite(p, d, layer == 0); });
     }
   }
   void resolve(const picture::PictureRequest& request, Drawing& out) {
@@ -209,20 +209,30 @@ class TilePass {
   [[nodiscard]] uint64_t fragments() const { return fragments_; }
 
  private:
+  [[nodiscard]] size_t index(int x, int y) const { return static_cast<size_t>(y - rect_.y0) * kTile + (x - rect_.x0); }
+
   template <typename Visit>
   void for_each_pixel(const PixelRect& rect, const Visit& visit) {
     for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x) {
-        PixelState& pixel = pixels_[static_cast<size_t>(y - rect_.y0) * kTile + (x - rect_.x0)];
         const PixelRect& window = scene_.window();
         const size_t place = static_cast<size_t>(y - window.y0) * (window.x1 - window.x0) + (x - window.x0);
-        visit(pixel, frame_.ray(glm::dvec2(x + 0.5, y + 0.5) + sample_), place);
+        visit(pixels_[index(x, y)], rays_[index(x, y)], place);
       }
     }
   }
 
-  [[nodiscard]] bool all_done() const {
-    return std::all_of(pixels_.begin(), pixels_.end(), [](const PixelState& p) { return p.done; });
+  /// Bounds of the pixels that are not finished.
+  [[nodiscard]] PixelRect bounds_of_open() const {
+    PixelRect bounds{rect_.x1, rect_.y1, rect_.x0, rect_.y0};
+    for (int y = rect_.y0; y < rect_.y1; ++y) {
+      for (int x = rect_.x0; x < rect_.x1; ++x) {
+        if (pixels_[index(x, y)].done) continue;
+        bounds = {std::min(bounds.x0, x), std::min(bounds.y0, y), std::max(bounds.x1, x + 1),
+                  std::max(bounds.y1, y + 1)};
+      }
+    }
+    return bounds;
   }
 
   void see(const DrawnSurfel& surfel, const PixelRect& rect) {
@@ -275,14 +285,13 @@ class TilePass {
   }
 
   const TiledScene& scene_;
-  const geometry::CameraFrame& frame_;
   const KernelParameters& kernel_;
-  glm::dvec2 sample_;  ///< pixels from a pixel's centre
   int column_;
   int row_;
   PixelRect rect_;
   uint64_t fragments_ = 0;
   std::array<PixelState, kTile * kTile> pixels_{};
+  std::array<glm::dvec3, kTile * kTile> rays_{};  ///< of the pixels' samples
 };
 
 /// Draws the pixels of the scene's window that are marked in `mask`, or all pixels if it is null. `sample` is the

@@ -16,6 +16,8 @@ std::optional<Splat> Splat::make(const glm::dvec3& o, const glm::dvec3& n, doubl
   splat.o_ = o;
   splat.n_ = glm::normalize(n);
   splat.eta_ = eta;
+  splat.scale_ = eta / o.z;
+  splat.centre_ = glm::dvec2(o) / o.z;
   splat.prefilter_ = prefilter;
   splat.sigma_ = kernel.sigma * radius;
   splat.disc_radius_ = kernel.visibility_radius * radius;
@@ -42,7 +44,7 @@ std::optional<Splat> Splat::make(const glm::dvec3& o, const glm::dvec3& n, doubl
 //   det(S) r2 = s^2 |m x n|^2 + rho^2 |v|^2,           m = (v.y, -v.x, d.y v.x - d.x v.y) = (eta / o.z) (d x o)
 //   det(S)    = s^4 (n.d)^2 + s^2 rho^2 T + rho^4,     T = trace(J J^T) = 2 + |d.xy|^2 - |n.xy - d.xy n.z|^2
 Fragment Splat::quadratic(const glm::dvec3& d, double s, double rho) const {
-  const glm::dvec2 v{eta_ * (d.x - o_.x / o_.z), eta_ * (d.y - o_.y / o_.z)};
+  const glm::dvec2 v = eta_ * (glm::dvec2(d) - centre_);
   const glm::dvec3 m{v.y, -v.x, d.y * v.x - d.x * v.y};
   const glm::dvec3 mn = glm::cross(m, n_);
   const glm::dvec2 an{n_.x - d.x * n_.z, n_.y - d.y * n_.z};
@@ -63,16 +65,16 @@ Fragment Splat::object_space(const glm::dvec3& d, double deviation) const {
 
 Fragment Splat::fragment(const glm::dvec3& d) const {
   if (reaches_eye_plane_) return object_space(d, sigma_);
-  return quadratic(d, sigma_ * eta_ / o_.z, prefilter_);
+  return quadratic(d, sigma_ * scale_, prefilter_);
 }
 
 double Splat::gain(const glm::dvec3& d, double prefilter) const {
-  return reaches_eye_plane_ ? 1 : quadratic(d, sigma_ * eta_ / o_.z, prefilter).gain;
+  return reaches_eye_plane_ ? 1 : quadratic(d, sigma_ * scale_, prefilter).gain;
 }
 
 bool Splat::opaque(const glm::dvec3& d) const {
   const Fragment f =
-      reaches_eye_plane_ ? object_space(d, disc_radius_) : quadratic(d, disc_radius_ * eta_ / o_.z, disc_pixels_);
+      reaches_eye_plane_ ? object_space(d, disc_radius_) : quadratic(d, disc_radius_ * scale_, disc_pixels_);
   return f.r2 <= 1;
 }
 

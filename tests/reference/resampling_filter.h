@@ -82,6 +82,8 @@ class Splat {
   glm::dvec3 o_{0};
   glm::dvec3 n_{0};
   double eta_ = 0;
+  double scale_ = 0;      ///< pixels per world unit at the centre's depth
+  glm::dvec2 centre_{0};  ///< d.xy of the projected centre
   double sigma_ = 0;
   double prefilter_ = 0;
   double cutoff_ = 0;

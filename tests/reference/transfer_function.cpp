@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <numbers>
 
 #include "base/contract.h"
 #include "reference/linear_picture.h"
@@ -10,6 +11,7 @@
 namespace surfcast::reference {
 namespace {
 
+constexpr double kGaussNode = 0.5 * std::numbers::inv_sqrt3;  ///< distance from the middle of an interval of 1
 constexpr double kOpaqueDepth = 16;  ///< optical depth of one spacing at opacity 1: a transmittance of 1e-7
 
 }  // namespace
@@ -32,6 +34,30 @@ Classified TransferFunction::at(double value) const {
   if (above == points_.end()) return a.seen;
   const double t = (value - a.value) / (above->value - a.value);
   return {glm::mix(a.seen.color, above->seen.color, t), std::lerp(a.seen.extinction, above->seen.extinction, t)};
+}
+
+// Between two points the extinction and the colour are linear, and Gauss's formula with two nodes integrates their
+// product exactly.
+Classified TransferFunction::mean(double a, double b) const {
+  const auto [low, high] = std::minmax(a, b);
+  if (!(high > low)) return at(a);
+  Classified mean;
+  double from = low;
+  const auto add_up_to = [&, width = high - low](double to) {
+    for (const double node : {-kGaussNode, kGaussNode}) {
+      const Classified seen = at(0.5 * (from + to) + node * (to - from));
+      const double extinction = 0.5 * (to - from) / width * seen.extinction;
+      mean.extinction += extinction;
+      mean.color += extinction * seen.color;
+    }
+    from = to;
+  };
+  for (const Point& p : points_) {
+    if (p.value > from && p.value < high) add_up_to(p.value);
+  }
+  add_up_to(high);
+  if (mean.extinction > 0) mean.color /= mean.extinction;
+  return mean;
 }
 
 bool TransferFunction::visible_within(double low, double high) const {

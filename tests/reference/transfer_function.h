@@ -29,6 +29,8 @@ class TransferFunction {
   TransferFunction(std::vector<TransferPoint> points, double spacing);
 
   [[nodiscard]] Classified at(double value) const;
+  /// The mean over the values between a and b; of colours, weighted by extinctions.
+  [[nodiscard]] Classified mean(double a, double b) const;
   /// Whether any value in [low, high] has an opacity.
   [[nodiscard]] bool visible_within(double low, double high) const;
 

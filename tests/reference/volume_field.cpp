@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <numbers>
 
 namespace surfcast::reference {
@@ -37,7 +38,7 @@ constexpr Blob kBlobs[] = {{{-0.35, 0.3, 0.1}, 0.17, 1.0},   {{0.4, 0.25, -0.2},
 double marschner_lobb_signal(const glm::dvec3& p) {
   constexpr double kAlpha = 0.25;
   constexpr double kFrequency = 6;
-  const double r = std::hypot(p.x, p.y);
+  const double r = glm::length(glm::dvec2(p));
   const double ring = std::cos(2 * kPi * kFrequency * std::cos(0.5 * kPi * r));
   return (1 - std::sin(0.5 * kPi * p.z) + kAlpha * (1 + ring)) / (2 * (1 + kAlpha));
 }
@@ -54,7 +55,8 @@ VolumeField ball_field() {
 
 VolumeField torus_field() {
   return {"torus", [](const glm::dvec3& p) {
-            const double from_circle = std::hypot(std::hypot(p.x, p.y) - kTorusRadius, p.z) / kTubeDeviation;
+            const double from_circle =
+                glm::length(glm::dvec2(glm::length(glm::dvec2(p)) - kTorusRadius, p.z)) / kTubeDeviation;
             const double wave = 0.8 + 0.2 * std::cos(kTorusWaves * std::atan2(p.y, p.x));
             return wave * std::exp(-0.5 * from_circle * from_circle);
           }};

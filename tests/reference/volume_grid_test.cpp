@@ -120,6 +120,26 @@ TEST(TransferFunction, IsLinearBetweenPointsAndConstantBeyond) {
   EXPECT_NEAR(transfer.at(7).extinction, -std::log(0.5) / 2, 1e-12);
 }
 
+TEST(TransferFunction, MeansAreIntegralsOverTheirRange) {
+  const TransferFunction transfer(
+      {{0, {1, 0, 0}, 0}, {0.2, {0, 1, 0}, 0.3}, {0.4, {0, 0, 1}, 0.1}, {0.4, {1, 1, 0}, 0.6}, {1, {0.2, 0.4, 1}, 0}},
+      2);
+  for (const auto& [a, b] : {std::pair(0.05, 0.15), std::pair(0.1, 0.9), std::pair(1.5, -0.5), std::pair(0.4, 0.2)}) {
+    Classified sum;
+    constexpr int kSteps = 100'000;
+    for (int i = 0; i < kSteps; ++i) {
+      const Classified seen = transfer.at(std::lerp(a, b, (i + 0.5) / kSteps));
+      sum.extinction += seen.extinction / kSteps;
+      sum.color += seen.extinction / kSteps * seen.color;
+    }
+    const Classified mean = transfer.mean(a, b);
+    EXPECT_NEAR(mean.extinction, sum.extinction, 1e-5) << a << " to " << b;
+    EXPECT_LT(glm::distance(mean.color, sum.color / sum.extinction), 1e-4) << a << " to " << b;
+  }
+  EXPECT_EQ(transfer.mean(0.3, 0.3).extinction, transfer.at(0.3).extinction);
+  EXPECT_EQ(transfer.mean(2, 3).extinction, 0);
+}
+
 TEST(TransferFunction, MayBeEmptyOnePointOrAStep) {
   EXPECT_EQ(TransferFunction({}, 1).at(0.5).extinction, 0);
   EXPECT_FALSE(TransferFunction({}, 1).visible_within(-1e9, 1e9));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <numbers>
 #include <random>
 
@@ -44,8 +45,8 @@ std::vector<uint32_t> thinned(const std::vector<Sample>& samples, const PointTre
 }  // namespace
 
 ImplicitSurface torus() {
-  const auto around = [](const glm::dvec3& p) { return std::max(std::hypot(p.x, p.y), 1e-12); };
-  return {"torus", [around](const glm::dvec3& p) { return std::hypot(around(p) - 1, p.z) - 0.4; },
+  const auto around = [](const glm::dvec3& p) { return std::max(glm::length(glm::dvec2(p)), 1e-12); };
+  return {"torus", [around](const glm::dvec3& p) { return glm::length(glm::dvec2(around(p) - 1, p.z)) - 0.4; },
           [around](const glm::dvec3& p) {
             const double r = around(p);
             return glm::dvec3(p.x * (r - 1) / r, p.y * (r - 1) / r, p.z);
