@@ -68,9 +68,10 @@ void main() {
     bool more = draw_next(tile, pixel, unit, medium);
     if (medium) break;
     if (more && find < finds) continue;
-    if (!draw_waiting(tile, pixel)) break;
-    medium = true;
+    medium = leave_medium();
+    if (!medium) break;
   }
+  draw_last(medium, pixel);
   if (own_start() == 0u) write_pixels(local);
 }
 #else
@@ -106,7 +107,6 @@ bool begin(inout LaneState state, bool first) {
   state.find = 0;
   state.medium = kMedium;
   begin_pixels(SURFCAST_COLUMNS);
-  state.unit = unit_of_list(state.tile, vec2(frame.region.xy + state.local) + 0.5);
   return true;
 }
 
@@ -116,13 +116,16 @@ void main() {
   bool drawing = begin(state, true);
   while (drawing) {
     vec2 pixel = vec2(frame.region.xy + state.local) + 0.5;
+    select_next(state.tile, state.medium);
+    if (state.find == 0) state.unit = unit_of_list(state.tile, pixel);
     bool more = draw_next(state.tile, pixel, state.unit, state.medium);
     ++state.find;
     if (!state.medium) {
       if (more && state.find < finds_for(state.tile.smalls, state.tile.larges)) continue;
-      state.medium = draw_waiting(state.tile, pixel);
+      state.medium = leave_medium();
       if (state.medium) continue;
     }
+    draw_last(state.medium, pixel);
     if (state.drawn) write_pixels(state.local);
     drawing = begin(state, false);
   }

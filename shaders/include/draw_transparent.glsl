@@ -142,8 +142,8 @@ struct Pixels {
 #endif
 };
 
-// Those of the lane. No parameter of the functions below: the compiler of NVIDIA (driver 580) loses what draw_waiting
-// changes in a structure that it passes on.
+// Those of the lane. No parameter of the functions below: the compiler of NVIDIA (driver 580) loses what functions
+// change in a structure that is passed on.
 Pixels pixels;
 
 void begin_pixels(int wanted) {
@@ -156,15 +156,8 @@ void begin_pixels(int wanted) {
   }
 }
 
-// 1 for the unit of sums; the peak of the list bounds all terms.
+// 1 for the unit of sums; the peak of the selected part of the list bounds all terms.
 float unit_of_list(TileLists tile, vec2 pixel) {
-  BoolColumns all;
-  Columns limit;
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    all[c] = BoolRows(true);
-    limit[c] = Rows(kHidesAll);
-  }
-  select_behind(tile, all, limit);
   float peak = peak_of_list(tile);
 #ifdef SURFCAST_LARGE
   peak = max(peak, peak_of_large(tile, ray_of_pixel(pixel)));
@@ -231,29 +224,31 @@ void composite(int c, Rows opacity, Rows now, Rows end, vec2 pixel) {
 #endif
 }
 
-// Lets a surface wait, and composites what waited if it is not a part of the same surface.
-void take_surface(int c, SurfaceSums sums, Rows begin, Rows end, float one, vec2 pixel) {
+// Lets sums wait, and composites what waited unless both are parts of one surface.
+void take(int c, SurfaceSums sums, Rows begin, Rows end, bool medium, float one, vec2 pixel) {
   BoolRows open = is_open(c);
   Rows count = pixels.waiting[c].count + fixed_value(sums.count) * one;
   Rows joins = mix(Rows(0.0), Rows(1.0), at_most(count, Rows(SURFCAST_SURFACE_WHOLE)));
   joins *= mix(Rows(0.0), Rows(1.0), at_most(pixels.waiting[c].end, begin));
-  joins = mix(Rows(1.0), joins, open);
-  Rows opacity = opacity_of(pixels.waiting[c]);
-  composite(c, opacity, 1.0 - joins, pixels.waiting[c].end, pixel);
-  Rows last = mix(pixels.waiting[c].end, end, open);
+  joins = mix(mix(Rows(1.0), joins, open), Rows(0.0), BoolRows(medium));
+  composite(c, opacity_of(pixels.waiting[c]), 1.0 - joins, pixels.waiting[c].end, pixel);
+  Rows last = mix(mix(pixels.waiting[c].end, end, open), Rows(0.0), BoolRows(medium));
   wait_for_next(pixels.waiting[c], sums, last, joins, one);
-  pixels.limit[c] = mix(pixels.limit[c], end, open);
+  if (!medium) pixels.limit[c] = mix(pixels.limit[c], end, open);
 }
 
-void blend_medium(int c, SurfaceSums sums, float one, vec2 pixel) {
-  wait_for_next(pixels.waiting[c], sums, Rows(0.0), Rows(0.0), one);
-  Rows opacity = 1.0 - exp(-kDepthUnit * pixels.waiting[c].count);
-  opacity = mix(Rows(0.0), opacity, less(Rows(0.0), pixels.waiting[c].opacity));
-  composite(c, opacity, Rows(1.0), pixels.limit[c], pixel);
+// Selects the entries for the next surface, or with `medium` for everything behind the limits.
+void select_next(TileLists tile, bool medium) {
+  BoolColumns open;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    open[c] = is_open(c);
+    if (medium) open[c] = less(Rows(0.0), pixels.limit[c]);
+  }
+  select_behind(tile, open, pixels.limit);
 }
 
-// Draws the next surface, or with `medium` everything behind the limits. False if all pixels are finished but for what
-// waits.
+// Draws the next surface, or with `medium` everything behind the limits, in front of which is what waited. False if all
+// pixels are finished but for what waits.
 bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium) {
   Columns begin;
   Columns end;
@@ -261,36 +256,34 @@ bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium) {
   if (!medium) end = next_end(tile, pixel, begin);
   SurfaceColumns sums;
   add_all(tile, pixel, pixels.limit, end, unit, medium, sums);
-  BoolColumns open;
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    open[c] = BoolRows(false);
-    if (medium) {
-      blend_medium(c, sums[c], 1.0 / unit, pixel);
-    } else {
-      take_surface(c, sums[c], begin[c], end[c], 1.0 / unit, pixel);
-      open[c] = is_open(c);
-      more = more || any_of(open[c]);
-    }
+    take(c, sums[c], begin[c], end[c], medium, 1.0 / unit, pixel);
+    more = more || any_of(is_open(c));
   }
   keep_layers(pixel);
-  if (more) select_behind(tile, open, pixels.limit);
   return share_any(more);
 }
 
-// Draws what waits. True if something is left behind it.
-bool draw_waiting(TileLists tile, vec2 pixel) {
-  BoolColumns open;
+// Leaves the pixels open in which something is seen behind what waits. False if there are none.
+bool leave_medium() {
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    Rows opacity = opacity_of(pixels.waiting[c]);
-    composite(c, opacity, Rows(1.0), pixels.waiting[c].end, pixel);
-    BoolRows seen = less(Rows(kOpaque), pixels.light[c].transmittance);
-    pixels.limit[c] = mix(Rows(0.0), pixels.limit[c], seen);
-    open[c] = less(Rows(0.0), pixels.limit[c]);
-    more = more || any_of(open[c]);
+    Rows left = pixels.light[c].transmittance * (1.0 - opacity_of(pixels.waiting[c]));
+    pixels.limit[c] = mix(Rows(0.0), pixels.limit[c], less(Rows(kOpaque), left));
+    more = more || any_of(less(Rows(0.0), pixels.limit[c]));
+  }
+  return share_any(more);
+}
+
+// Composites what waits: the last surface, or the medium.
+void draw_last(bool medium, vec2 pixel) {
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    Rows thin = 1.0 - exp(-kDepthUnit * pixels.waiting[c].count);
+    thin = mix(Rows(0.0), thin, less(Rows(0.0), pixels.waiting[c].opacity));
+    Rows opacity = mix(opacity_of(pixels.waiting[c]), thin, BoolRows(medium));
+    Rows end = mix(pixels.waiting[c].end, pixels.limit[c], BoolRows(medium));
+    composite(c, opacity, Rows(1.0), end, pixel);
   }
   keep_layers(pixel);
-  if (more) select_behind(tile, open, pixels.limit);
-  return share_any(more);
 }
