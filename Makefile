@@ -69,19 +69,20 @@ peers-tensors: configure
 	cmake --build --preset release --target glyph_bench
 	/usr/bin/python3 bench/peers/glyphs.py build/bin/glyph_bench --docs docs $(PEERS_FLAGS) $(FIELDS)
 
-# The tests that read bytes of strangers, with the address and undefined behaviour sanitizers; asan-all: all unit tests
-# and the numerics tests that are not slow. clang compiles them in about two thirds of the time of GCC.
+# The address and undefined behaviour sanitizers. BASE=REVISION: the tests that read bytes of strangers and can see what
+# differs from it. Without BASE: those that read damaged files and messages. asan-all: all unit tests and the numerics
+# tests that are not slow. clang compiles them in about two thirds of the time of GCC.
 # Its runtime takes some thread-local blocks for those of glibc 2.19 and crashes in the search for leaks
 # (github.com/google/sanitizers/issues/1322). The preset therefore sets intercept_tls_get_addr=0.
-# BASE=REVISION: only those that can see what differs from it.
 SEEN = $(if $(BASE),--base $(BASE))
 asan: sanitizer-packages
-	cmake/sanitize.sh asan-ubsan input_tests 'bytes|hostile' $(SEEN)
+	cmake/sanitize.sh asan-ubsan $(if $(BASE),input_tests 'bytes|hostile' $(SEEN),hostile_tests hostile)
 
 asan-all: sanitizer-packages
 	cmake/sanitize.sh asan-ubsan sanitized_tests '^unit|^gl-numerics|hostile' --nightly
 
-# The tests that are about threads, under the thread sanitizer; tsan-all: also those that use sockets.
+# The tests that are about threads, under the thread sanitizer. BASE=REVISION: those that can see what differs from it.
+# tsan-all: also those that use sockets.
 tsan: sanitizer-packages
 	cmake/sanitize.sh tsan thread_tests threads $(SEEN)
 

@@ -303,8 +303,8 @@ endfunction()
 # than half a minute and do not draw: processes that draw compile the same shaders, each of them where none is cached.
 # A label is one word with parts that ctest can select (-L gl, -LE slow): first the requirements of a test, then its
 # suite, as in gl-slow-numerics.
-# Suites of the sanitizers: `bytes` and `hostile` read bytes of strangers, the latter slowly, and run under the address
-# sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
+# Suites of the sanitizers: `hostile` reads damaged files and messages, `bytes` others of strangers, and both run under
+# the address sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
 # under it in `make nightly`, as all unit tests do under the address sanitizer.
 # COMPUTES: optimized a little, as tests with the labels gl and slow are.
 # NIGHTLY: patterns of cases, as in filters of GoogleTest. These cases run in `make nightly` alone, not in `make test`:
@@ -344,6 +344,9 @@ function(surfcast_test name)
   endif()
   if(ARG_LABELS MATCHES "bytes|hostile")
     add_dependencies(input_tests ${name})
+  endif()
+  if(ARG_LABELS MATCHES "hostile")
+    add_dependencies(hostile_tests ${name})
   endif()
   if(ARG_LABELS MATCHES "threads")
     add_dependencies(thread_tests ${name})
