@@ -21,6 +21,12 @@ layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { u
 layout(std430, binding = SURFCAST_BIND_NEXT_TILES) buffer NextTiles { uint next_tiles[]; };
 #endif
 
+#ifdef SURFCAST_DENSITY
+const bool kMedium = true;
+#else
+const bool kMedium = false;
+#endif
+
 #include "include/front.glsl"
 #include "include/draw_lane.glsl"
 #include "include/write_rows.glsl"
@@ -43,12 +49,6 @@ ivec2 first_pixel(uint tile, ivec2 lane) {
   ivec2 place = ivec2(tile % uint(frame.tiles.x), tile / uint(frame.tiles.x));
   return place * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) + lane * ivec2(SURFCAST_COLUMNS, SURFCAST_ROWS);
 }
-
-#ifdef SURFCAST_DENSITY
-const bool kMedium = true;
-#else
-const bool kMedium = false;
-#endif
 
 #ifdef SURFCAST_TOGETHER
 void main() {
@@ -81,7 +81,7 @@ struct LaneState {
   ivec2 local;  // first pixel of the lane
   bool drawn;   // the tile belongs to this variant
   int find;
-  bool medium;  // everything behind the surfaces is drawn at once
+  bool medium;  // everything behind the surfaces is drawn at once; there are no surfaces if kMedium
   float unit;
 };
 
@@ -105,7 +105,7 @@ bool begin(inout LaneState state, bool first) {
   if (!state.drawn) state.tile = TileLists(0u, 0u, 0u, 0u, 0u);
   state.local = first_pixel(index, ivec2(gl_LocalInvocationID.x % uint(kLanesAcross), gl_LocalInvocationID.y));
   state.find = 0;
-  state.medium = kMedium;
+  state.medium = false;
   begin_pixels(SURFCAST_COLUMNS);
   return true;
 }
@@ -116,16 +116,17 @@ void main() {
   bool drawing = begin(state, true);
   while (drawing) {
     vec2 pixel = vec2(frame.region.xy + state.local) + 0.5;
-    select_next(state.tile, state.medium);
+    bool medium = kMedium || state.medium;
+    select_next(state.tile, medium);
     if (state.find == 0) state.unit = unit_of_list(state.tile, pixel);
-    bool more = draw_next(state.tile, pixel, state.unit, state.medium);
+    bool more = draw_next(state.tile, pixel, state.unit, medium);
     ++state.find;
-    if (!state.medium) {
+    if (!medium) {
       if (more && state.find < finds_for(state.tile.smalls, state.tile.larges)) continue;
       state.medium = leave_medium();
       if (state.medium) continue;
     }
-    draw_last(state.medium, pixel);
+    draw_last(medium, pixel);
     if (state.drawn) write_pixels(state.local);
     drawing = begin(state, false);
   }

@@ -231,7 +231,7 @@ void take(int c, SurfaceSums sums, Rows begin, Rows end, bool medium, float one,
   Rows joins = mix(Rows(0.0), Rows(1.0), at_most(count, Rows(SURFCAST_SURFACE_WHOLE)));
   joins *= mix(Rows(0.0), Rows(1.0), at_most(pixels.waiting[c].end, begin));
   joins = mix(mix(Rows(1.0), joins, open), Rows(0.0), BoolRows(medium));
-  composite(c, opacity_of(pixels.waiting[c]), 1.0 - joins, pixels.waiting[c].end, pixel);
+  if (!kMedium) composite(c, opacity_of(pixels.waiting[c]), 1.0 - joins, pixels.waiting[c].end, pixel);
   Rows last = mix(mix(pixels.waiting[c].end, end, open), Rows(0.0), BoolRows(medium));
   wait_for_next(pixels.waiting[c], sums, last, joins, one);
   if (!medium) pixels.limit[c] = mix(pixels.limit[c], end, open);
