@@ -68,7 +68,7 @@ float least(vec4 v) { return min(min(v.x, v.y), min(v.z, v.w)); }
 Row load_row(ivec2 at, int number) {
   Row row = row_without_hits();
   if (span.y == 0u) return row;
-  for (int x = 0; x < 4; ++x) {
+  for (int x = 0; x < not_unrolled(4); ++x) {
     ivec2 pixel = at + ivec2(x, 0);
     if (!inside(pixel)) continue;
     row.depth[x] = depths[sample_index(pixel, number)];
@@ -78,7 +78,7 @@ Row load_row(ivec2 at, int number) {
 }
 
 void store_row(ivec2 at, int number, Row row, bool finished) {
-  for (int x = 0; x < 4; ++x) {
+  for (int x = 0; x < not_unrolled(4); ++x) {
     ivec2 pixel = at + ivec2(x, 0);
     if (!inside(pixel)) continue;
     ids[sample_index(pixel, number)] = row.id[x];
