@@ -68,7 +68,7 @@ void main() {
     bool more = draw_next(tile, pixel, unit, medium);
     if (medium) break;
     if (more && find < finds) continue;
-    medium = leave_medium();
+    medium = open_for_medium();
     if (!medium) break;
   }
   draw_last(medium, pixel);
@@ -81,7 +81,7 @@ struct LaneState {
   ivec2 local;  // first pixel of the lane
   bool drawn;   // the tile belongs to this variant
   int find;
-  bool medium;  // everything behind the surfaces is drawn at once; there are no surfaces if kMedium
+  bool medium;  // everything behind the surfaces is drawn at once; with kMedium there are no surfaces
   float unit;
 };
 
@@ -123,7 +123,7 @@ void main() {
     ++state.find;
     if (!medium) {
       if (more && state.find < finds_for(state.tile.smalls, state.tile.larges)) continue;
-      state.medium = leave_medium();
+      state.medium = open_for_medium();
       if (state.medium) continue;
     }
     draw_last(medium, pixel);

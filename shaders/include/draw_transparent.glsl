@@ -261,12 +261,12 @@ bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium) {
     take(c, sums[c], begin[c], end[c], medium, 1.0 / unit, pixel);
     more = more || any_of(is_open(c));
   }
-  keep_layers(pixel);
+  if (!kMedium) keep_layers(pixel);
   return share_any(more);
 }
 
-// Leaves the pixels open in which something is seen behind what waits. False if there are none.
-bool leave_medium() {
+// Keeps those pixels open in which something is seen behind what waits. False if there are none.
+bool open_for_medium() {
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     Rows left = pixels.light[c].transmittance * (1.0 - opacity_of(pixels.waiting[c]));
