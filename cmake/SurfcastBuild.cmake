@@ -304,8 +304,8 @@ endfunction()
 # A label is one word with parts that ctest can select (-L gl, -LE slow): first the requirements of a test, then its
 # suite, as in gl-slow-numerics.
 # Suites of the sanitizers: `hostile` reads damaged files and messages, `bytes` others of strangers, and both run under
-# the address sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
-# under it in `make nightly`, as all unit tests do under the address sanitizer.
+# the address sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside,
+# and runs under it in `make nightly`, as all unit tests do under the address sanitizer.
 # COMPUTES: optimized a little, as tests with the labels gl and slow are.
 # NIGHTLY: patterns of cases, as in filters of GoogleTest. These cases run in `make nightly` alone, not in `make test`:
 # they are a test of their own with the suite `nightly`. Sanitizers do not run them. NIGHTLY *: all cases. The program is

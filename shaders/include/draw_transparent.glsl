@@ -261,7 +261,7 @@ bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium) {
     take(c, sums[c], begin[c], end[c], medium, 1.0 / unit, pixel);
     more = more || any_of(is_open(c));
   }
-  if (!kMedium) keep_layers(pixel);
+  if (!kMedium) keep_layers(pixel);  // a density has composited nothing yet
   return share_any(more);
 }
 

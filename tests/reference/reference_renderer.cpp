@@ -45,6 +45,10 @@ PixelRect intersect(const PixelRect& a, const PixelRect& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
+bool is_empty(const PixelRect& rect) {
+  return rect.x0 >= rect.x1 || rect.y0 >= rect.y1;
+}
+
 PixelRect grown(const PixelRect& rect, int pixels) {
   return {rect.x0 - pixels, rect.y0 - pixels, rect.x1 + pixels, rect.y1 + pixels};
 }
@@ -116,7 +120,7 @@ class TiledScene {
     const auto splat = Splat::make(o, drawn_n, cloud.radii[i], frame_.eta, sampling_.prefilter, kernel);
     if (!splat) return;
     const PixelRect bounds = intersect(grown(pixel_bounds(*splat, frame_), sampling_.reach), window_);
-    if (bounds.x0 >= bounds.x1 || bounds.y0 >= bounds.y1) return;
+    if (is_empty(bounds)) return;
     const glm::dvec3 facing = glm::dot(n, o) > 0 ? -n : n;
     const glm::dvec3 color = cloud.colors ? linear_color(*cloud.colors, i) : glm::dvec3(kAlbedo);
     const bool per_surfel = request.normalization == picture::Normalization::kSurfel;
@@ -190,7 +194,7 @@ class TilePass {
   void draw() {
     for (int layer = 0; layer < kMaxLayers; ++layer) {
       const PixelRect open = bounds_of_open();
-      if (open.x0 >= open.x1) return;
+      if (is_empty(open)) return;
       scene_.for_each_surfel(column_, row_, open, [&](const DrawnSurfel& s, const PixelRect& r) { see(s, r); });
       scene_.for_each_surfel(column_, row_, open, [&](const DrawnSurfel& s, const PixelRect& r) { accumulate(s, r); });
       for_each_pixel(open, [&](PixelState& p, const glm::dvec3& d, size_t) { composite(p, d, layer == 0); });

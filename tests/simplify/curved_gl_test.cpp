@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <glm/vec2.hpp>
 #include <optional>
 #include <string>
 
@@ -56,7 +55,7 @@ std::optional<glm::dvec3> cast(const ImplicitSurface& surface, const glm::dvec3&
     const double away = glm::length(p) - std::sqrt(3.0) * surface.extent;
     if (away > 0 && glm::dot(p, direction) > 0) break;
     // To the cylinder that cuts off an open surface, and a little into it.
-    const double outside = glm::length(glm::dvec2(p)) - surface.border;
+    const double outside = surface.beyond_border(p);
     const double d = outside > 0 ? std::max(outside, 1e-5) : std::abs(surface.distance(p));
     if (d < 1e-9) return p;
     t += std::max(d, away);

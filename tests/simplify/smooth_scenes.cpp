@@ -162,7 +162,7 @@ std::vector<Sample> random_samples(const ImplicitSurface& surface, size_t count,
     const double slope = (surface.distance(p + 1e-6 * n) - surface.distance(p - 1e-6 * n)) / 2e-6;
     if (share(random) * 1.5 > slope) continue;
     for (int i = 0; i < 20; ++i) p -= surface.distance(p) / slope * normal_at(surface, p);
-    if (!surface.is_cut(p)) samples.push_back({p, normal_at(surface, p)});
+    if (surface.beyond_border(p) <= 0) samples.push_back({p, normal_at(surface, p)});
   }
   return samples;
 }

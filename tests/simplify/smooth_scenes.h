@@ -1,8 +1,9 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <string>
@@ -22,8 +23,8 @@ struct ImplicitSurface {
   double extent = 1;  ///< half of the side of a cube about the origin that holds it
   double border = std::numeric_limits<double>::infinity();  ///< radius of the cylinder about z that cuts it off
 
-  /// True if the point lies beyond the border.
-  [[nodiscard]] bool is_cut(const glm::dvec3& p) const { return std::hypot(p.x, p.y) > border; }
+  /// Distance of the point from the cylinder; negative within it.
+  [[nodiscard]] double beyond_border(const glm::dvec3& p) const { return glm::length(glm::dvec2(p)) - border; }
 };
 
 /// A torus about z: radius 1 of its circle, 0.4 of its tube.
