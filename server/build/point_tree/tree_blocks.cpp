@@ -17,8 +17,9 @@ namespace {
 
 /// Of the memory: points of nodes, which are needed again below; the rest is for blocks.
 constexpr size_t kPointsShare = 2;
-/// The same, and not a part of it: blocks that wait to be written to this disk.
-constexpr size_t kWaitingShare = 4;
+/// The same, and not a part of it: blocks that wait to be written to this disk. Those of a view of a street wait
+/// together, because they are coded once the processors are idle.
+constexpr size_t kWaitingShare = 2;
 
 /// Counts up when blocks are made in another way: those on disk are made anew then.
 constexpr int kMakerVersion = 5;
