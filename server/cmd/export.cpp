@@ -138,10 +138,9 @@ void add_export_command(CLI::App& app, Status& outcome) {
   export_command
       ->add_option(
           "--chunk", command->options.encoding.chunk_size,
-          "Points in a chunk of LAZ, which is decoded as a whole; of COPC, EPT and Potree: cells with at most as "
-          "many are not divided")
-      ->check(CLI::Range(1U, 1U << 24))
-      ->capture_default_str();
+          "Points in a chunk of LAZ, which is decoded as a whole (default 50000); of COPC, EPT and Potree: cells with "
+          "at most as many are not divided (default 12000)")
+      ->check(CLI::Range(1U, 1U << 24));
   export_command
       ->add_option("--memory", command->memory,
                    "Memory limit, like 4G or 512M (default: a quarter of the machine's memory)")

@@ -86,10 +86,10 @@ Result<bool> holds_records(const fs::path& source) {
 
 Result<std::unique_ptr<RecordWriter>> create_records(const fs::path& target, LasHead head, const TargetForm& form,
                                                      const ExportOptions& options) {
-  head.chunk_size = options.encoding.chunk_size;
+  head.chunk_size = options.encoding.chunk_size.value_or(head.chunk_size);
   if (form.octree) {
     OctreeOptions octree = options.octree;
-    octree.leaf_points = options.encoding.chunk_size;
+    octree.leaf_points = options.encoding.chunk_size.value_or(octree.leaf_points);
     return create_octree_file(target, std::move(head), *form.octree, octree);
   }
   Result<LasFileWriter> file = LasFileWriter::create(target, std::move(head));

@@ -93,7 +93,7 @@ Result<std::unique_ptr<PointEncoder>> make_las_encoder(const scan::ScanSchema& s
   if (facts.count == 0) bounds.include(glm::dvec3(0));
   Result<LasTable> table = plan_las_table({&schema, bounds, facts.count, options.scale, compressed});
   if (!table) return fail(table);
-  table->head.chunk_size = options.chunk_size;
+  table->head.chunk_size = options.chunk_size.value_or(table->head.chunk_size);
   return std::make_unique<LasEncoder>(std::move(*table), facts);
 }
 

@@ -48,7 +48,8 @@ class PointEncoder {
 
 struct EncoderOptions {
   std::optional<double> scale;  ///< steps of LAS coordinates; none: those of the source, or see lattice_for
-  uint32_t chunk_size = 50000;  ///< points of a chunk of LAZ
+  /// Points of a chunk of LAZ; of octrees, OctreeOptions::leaf_points. None: the default of each.
+  std::optional<uint32_t> chunk_size;
 };
 
 /// What the encoder of a format needs to know.

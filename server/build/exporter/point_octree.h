@@ -27,7 +27,9 @@ class NodeWriter {
 };
 
 struct OctreeOptions {
-  uint64_t leaf_points = 50000;   ///< cells with at most as many points, or 15, are not divided
+  /// Cells with at most as many points, or 15, are not divided. Who shows a scan in place makes surfels of whole nodes:
+  /// small ones, of which few points are hidden, are faster (docs/in-place.md).
+  uint64_t leaf_points = 12000;
   uint64_t memory = 1ULL << 30;   ///< bytes for points
   size_t page_entries = 1 << 15;  ///< most nodes of a page of the hierarchy, see make_pages
 };
