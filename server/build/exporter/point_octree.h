@@ -27,8 +27,8 @@ class NodeWriter {
 };
 
 struct OctreeOptions {
-  /// Cells with at most as many points, or 15, are not divided. Who shows a scan in place makes surfels of whole nodes:
-  /// small ones, of which few points are hidden, are faster (docs/in-place.md).
+  /// Cells with at most as many points, or 15, are not divided. Surfels of a scan in place are made of whole nodes,
+  /// and small nodes have fewer points that are hidden (docs/in-place.md).
   uint64_t leaf_points = 12000;
   uint64_t memory = 1ULL << 30;   ///< bytes for points
   size_t page_entries = 1 << 15;  ///< most nodes of a page of the hierarchy, see make_pages
