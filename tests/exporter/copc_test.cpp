@@ -239,6 +239,14 @@ TEST_F(CopcTest, NodesMayBeOfAFewPoints) {
   expect_octree(copc);
 }
 
+TEST_F(CopcTest, CellsAreDividedDownToTheLeavesOfTheOptionsWithoutAChunkSize) {
+  const uint64_t leaf = OctreeOptions().leaf_points;
+  const CopcContent one = exported(write("one.las", hills(6, leaf).text()), {});
+  EXPECT_EQ(one.nodes().size(), 1U);
+  const CopcContent more = exported(write("more.las", hills(6, leaf + 1).text()), {});
+  EXPECT_GT(more.nodes().size(), 1U);
+}
+
 TEST_F(CopcTest, ScalesMayBeNegative) {
   LasFile file = hills(6, 2000);
   file.scale[0] = -0.01;

@@ -17,7 +17,7 @@ namespace {
 
 /// Of the memory: points of nodes, which are needed again below; the rest is for blocks.
 constexpr size_t kPointsShare = 2;
-/// The same, and not a part of it: blocks that wait to be written to this disk. Those of a view of a street wait
+/// Besides, as a share of the same memory: blocks that wait to be written to this disk. All those of a view wait
 /// together, because they are coded once the processors are idle.
 constexpr size_t kWaitingShare = 2;
 
