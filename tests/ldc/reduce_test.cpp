@@ -306,26 +306,76 @@ TEST(Reduce, AWireStaysThinnerThanAFourthOfTheRaySpacing) {
   for (const CoarseSurfel& s : coarse) EXPECT_LT(s.radius, 0.25 * kRay);
 }
 
-TEST(Reduce, ScatterIsNeverMergedIntoTheSurfaceBehindIt) {
+/// A grey sheet, and red scatter at a height above it, in ray spacings.
+std::vector<CoarseSurfel> sheet_below_scatter(double height) {
   std::vector<CoarseSurfel> scene = sheet(256, {0.5, 0.5, 0.5});
-  const std::vector<CoarseSurfel> alone = reduced(scene);
+  for (CoarseSurfel& s : scene) s.light = glm::vec3(0.5F);
   for (int i = 0; i < 500; ++i) {
-    scene.push_back(scatter_at({0.3 + 0.0008 * i, 0.4, 0.5 + 0.1 * kRay}, {0, 0, 1}, 1e-4F));
+    scene.push_back(scatter_at({0.3 + 0.0008 * i, 0.4, 0.5 + height * kRay}, {0, 0, 1}, 1e-4F));
     scene.back().light = {1, 0, 0};
+    scene.back().classification = 7;
   }
-  std::vector<CoarseSurfel> discs;
-  double area = 0;
-  for (const CoarseSurfel& s : reduced(scene)) {
-    if (!s.scatter) discs.push_back(s);
-    if (s.scatter) area += double{s.radius} * double{s.radius};
-    EXPECT_EQ(s.light.r, s.scatter ? 1 : 0);
+  return scene;
+}
+
+TEST(Reduce, ScatterIsNeverMergedIntoASurfaceThatItIsApartFrom) {
+  const std::vector<CoarseSurfel> alone = reduced(sheet_below_scatter(0));
+  for (const double height : {-0.3, 0.3, 1.0}) {
+    std::vector<CoarseSurfel> discs;
+    double area = 0;
+    for (const CoarseSurfel& s : reduced(sheet_below_scatter(height))) {
+      if (!s.scatter) discs.push_back(s);
+      if (s.scatter) area += double{s.radius} * double{s.radius};
+      EXPECT_EQ(s.light, s.scatter ? glm::vec3(1, 0, 0) : glm::vec3(0.5F));
+    }
+    ASSERT_EQ(discs.size(), alone.size());
+    for (size_t i = 0; i < discs.size(); ++i) {
+      EXPECT_EQ(discs[i].position, alone[i].position);
+      EXPECT_EQ(discs[i].radius, alone[i].radius);
+    }
+    EXPECT_NEAR(area / (500 * 1e-8), 1, 1e-4);
   }
-  ASSERT_EQ(discs.size(), alone.size());
-  for (size_t i = 0; i < discs.size(); ++i) {
-    EXPECT_EQ(discs[i].position, alone[i].position);
-    EXPECT_EQ(discs[i].radius, alone[i].radius);
+}
+
+TEST(Reduce, ScatterOnASurfaceGivesItsLightByAreaAndNothingElse) {
+  std::vector<CoarseSurfel> sheet_alone = sheet_below_scatter(0);
+  std::erase_if(sheet_alone, [](const CoarseSurfel& s) { return s.scatter; });
+  const std::vector<CoarseSurfel> alone = reduced(sheet_alone);
+  for (const double height : {-0.2, 0.1, 0.2}) {
+    const std::vector<CoarseSurfel> coarse = reduced(sheet_below_scatter(height));
+    ASSERT_EQ(coarse.size(), alone.size());
+    double red = 0;
+    for (size_t i = 0; i < coarse.size(); ++i) {
+      EXPECT_FALSE(coarse[i].scatter);
+      EXPECT_EQ(coarse[i].classification, 0) << "the surface has the larger area";
+      EXPECT_EQ(coarse[i].position, alone[i].position);
+      EXPECT_EQ(coarse[i].normal, alone[i].normal);
+      EXPECT_EQ(coarse[i].radius, alone[i].radius);
+      // Light times area: what scatter adds is in proportion to its area.
+      const double share = (coarse[i].light.r - 0.5) / (1 - 0.5);
+      red += share / (1 - share) * 16 * std::pow(sheet_alone.front().radius, 2);
+    }
+    EXPECT_NEAR(red / (500 * 1e-8), 1, 1e-3);
   }
-  EXPECT_NEAR(area / (500 * 1e-8), 1, 1e-4);
+}
+
+TEST(Reduce, ScatterOnAnInclinedSurfaceIsJudgedByItsDistanceFromThePlane) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(-0.6, 0, 1));
+  const glm::dvec3 along = glm::normalize(glm::dvec3(1, 0, 0.6));
+  const auto scatter_left = [&](double height) {
+    std::vector<CoarseSurfel> scene = sheet(256, {0.5, 0.5, 0.5}, along, {0, 1, 0});
+    std::erase_if(scene, [](const CoarseSurfel& s) { return s.position.z < 0 || s.position.z >= 1; });
+    for (int i = 0; i < 200; ++i) {
+      scene.push_back(
+          scatter_at(glm::dvec3(0.5, 0.3 + 0.002 * i, 0.5) + 0.2 * std::sin(i) * along + height * kRay * normal,
+                     {0, 0, 1}, 1e-4F));
+    }
+    const std::vector<CoarseSurfel> coarse = reduced(scene);
+    return std::count_if(coarse.begin(), coarse.end(), [](const CoarseSurfel& s) { return s.scatter; });
+  };
+  EXPECT_EQ(scatter_left(0.24), 0);
+  EXPECT_EQ(scatter_left(-0.24), 0);
+  EXPECT_GT(scatter_left(0.26), 0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -22,6 +23,8 @@ constexpr glm::dvec3 kAxisBias{1, 1.1, 1.21};
 /// A surfel belongs to the image of its surroundings while its normal is within 60 degrees of the axis. At that angle
 /// the rays still sample its surface at half their density.
 constexpr float kSmallestCosine = 0.5F;
+/// Scatter within so many ray spacings of a disc's plane, on the ray of the disc, is the roughness of a surface.
+constexpr double kOnSurface = 0.25;
 
 /// The cell and its grid of rays.
 struct Cube {
@@ -84,33 +87,89 @@ class Surroundings {
   std::vector<glm::dvec3> squares_;
 };
 
+/// The ray of an image through a place within the cell, which faces the positive side of the axis or the other one.
+uint32_t ray_through(const glm::dvec3& offset, int axis, bool away, const Cube& cube) {
+  const int line_u = cube.line(offset[(axis + 1) % 3]);
+  const int line_v = cube.line(offset[(axis + 2) % 3]);
+  return static_cast<uint32_t>(((axis * 2 + static_cast<int>(away)) * cube.lines + line_v) * cube.lines + line_u);
+}
+
+std::array<uint32_t, 6> rays_through(const glm::dvec3& position, const Cube& cube) {
+  const glm::dvec3 offset = position - cube.min;
+  const auto ray = [&](int axis, bool away) { return ray_through(offset, axis, away, cube); };
+  return {ray(0, false), ray(0, true), ray(1, false), ray(1, true), ray(2, false), ray(2, true)};
+}
+
 Crossing cross(const CoarseSurfel& s, uint32_t number, int axis, const Cube& cube, bool oriented) {
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
   const glm::dvec3 offset = s.position - cube.min;
-  const int line_u = cube.line(offset[u]);
-  const int line_v = cube.line(offset[v]);
   const glm::dvec3 n(s.normal);
-  const uint32_t away = oriented && n[axis] < 0 ? 1 : 0;
-  Crossing crossing;
-  crossing.surfel = number;
-  crossing.ray =
-      static_cast<uint32_t>(((axis * 2 + static_cast<int>(away)) * cube.lines + line_v) * cube.lines + line_u);
-  crossing.depth =
-      offset[axis] + (n[u] * (offset[u] - cube.centre(line_u)) + n[v] * (offset[v] - cube.centre(line_v))) / n[axis];
-  return crossing;
+  const auto from_ray = [&](int side) { return offset[side] - cube.centre(cube.line(offset[side])); };
+  return {ray_through(offset, axis, oriented && n[axis] < 0, cube), number,
+          offset[axis] + (n[u] * from_ray(u) + n[v] * from_ray(v)) / n[axis]};
 }
 
-std::vector<Crossing> find_crossings(std::span<const CoarseSurfel> surfels, const Cube& cube, bool oriented) {
-  const Surroundings surroundings(surfels, cube);
-  std::vector<Crossing> crossings;
-  crossings.reserve(surfels.size());
-  for (uint32_t i = 0; i < surfels.size(); ++i) {
-    if (surfels[i].scatter) continue;
-    crossings.push_back(cross(surfels[i], i, surroundings.axis(surfels[i]), cube, oriented));
+/// Finds the disc that scatter lies on.
+class DiscFinder {
+ public:
+  DiscFinder(std::span<const CoarseSurfel> surfels, std::span<const Crossing> discs, const Cube& cube)
+      : surfels_(surfels), discs_(discs), cube_(cube) {}
+
+  /// The crossing of the disc on a ray through the same place whose plane is nearest, if it is near enough.
+  [[nodiscard]] std::optional<Crossing> find(const CoarseSurfel& s) const {
+    std::optional<Crossing> found;
+    double nearest = kOnSurface * cube_.spacing;
+    for (const uint32_t ray : rays_through(s.position, cube_)) {
+      auto crossing = std::lower_bound(discs_.begin(), discs_.end(), ray,
+                                       [](const Crossing& c, uint32_t wanted) { return c.ray < wanted; });
+      for (; crossing != discs_.end() && crossing->ray == ray; ++crossing) {
+        const CoarseSurfel& disc = surfels_[crossing->surfel];
+        const double away = std::abs(glm::dot(glm::dvec3(disc.normal), s.position - disc.position));
+        if (away >= nearest) continue;
+        nearest = away;
+        found = *crossing;
+      }
+    }
+    return found;
   }
-  std::sort(crossings.begin(), crossings.end());
-  return crossings;
+
+ private:
+  std::span<const CoarseSurfel> surfels_;
+  std::span<const Crossing> discs_;  ///< sorted
+  const Cube& cube_;
+};
+
+/// The surfels of a cell by what they are averaged with.
+struct Groups {
+  std::vector<Crossing> surfaces;  ///< sorted: discs, and scatter that lies on them with the crossing of its disc
+  std::vector<uint32_t> scatter;   ///< the rest
+};
+
+Groups group_surfels(std::span<const CoarseSurfel> surfels, const Cube& cube, bool oriented) {
+  const Surroundings surroundings(surfels, cube);
+  Groups groups;
+  groups.surfaces.reserve(surfels.size());
+  for (uint32_t i = 0; i < surfels.size(); ++i) {
+    if (surfels[i].scatter) {
+      groups.scatter.push_back(i);
+    } else {
+      groups.surfaces.push_back(cross(surfels[i], i, surroundings.axis(surfels[i]), cube, oriented));
+    }
+  }
+  std::sort(groups.surfaces.begin(), groups.surfaces.end());
+  if (groups.scatter.empty() || groups.surfaces.empty()) return groups;
+
+  const DiscFinder discs(surfels, groups.surfaces, cube);
+  std::vector<Crossing> on_discs;
+  std::erase_if(groups.scatter, [&](uint32_t i) {
+    const std::optional<Crossing> disc = discs.find(surfels[i]);
+    if (disc) on_discs.push_back({disc->ray, i, disc->depth});
+    return disc.has_value();
+  });
+  groups.surfaces.insert(groups.surfaces.end(), on_discs.begin(), on_discs.end());
+  std::sort(groups.surfaces.begin(), groups.surfaces.end());
+  return groups;
 }
 
 /// Finds the class that covers the largest area; the lowest one of equal classes.
@@ -149,53 +208,73 @@ float scatter_radius_of(double squares, double largest, const Cube& cube) {
   return static_cast<float>(std::min(std::sqrt(squares), std::max(0.5 * cube.spacing, largest)));
 }
 
+/// The means of light and scalars, weighted by area; of light also by opacity.
+class MeanLook {
+ public:
+  void add(const CoarseSurfel& s, double area) {
+    light_ += area * double{s.opacity} * glm::dvec3(s.light);
+    hidden_ += area * double{s.opacity};
+    intensity_ += area * s.intensity;
+    classes_.add(s.classification, area);
+    area_ += area;
+  }
+  /// Light of nothing that hides stays as it is.
+  void store(CoarseSurfel& s) const {
+    if (hidden_ > 0) s.light = glm::vec3(light_ / hidden_);
+    s.opacity = static_cast<float>(hidden_ / area_);
+    s.intensity = intensity_ / area_;
+    s.classification = classes_.winner();
+  }
+
+ private:
+  glm::dvec3 light_{0};
+  double hidden_ = 0;  ///< area that the surfels hide
+  double intensity_ = 0;
+  double area_ = 0;
+  ClassVotes classes_;
+};
+
+/// Of scatter alone, or of a surface: scatter that lies on it adds to its look only.
 CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Crossing> crossings, const Cube& cube) {
   if (crossings.size() == 1) return surfels[crossings.front().surfel];
-  const CoarseSurfel& first = surfels[crossings.front().surfel];
+  const auto is_disc = [&](const Crossing& crossing) { return !surfels[crossing.surfel].scatter; };
+  const auto disc = std::find_if(crossings.begin(), crossings.end(), is_disc);
+  const CoarseSurfel& first = surfels[(disc == crossings.end() ? crossings.begin() : disc)->surfel];
   glm::dvec3 position(0);
   glm::dvec3 normal(0);
-  glm::dvec3 light(0);
-  double intensity = 0;
   double squares = 0;
-  double hidden = 0;  // area that the surfels hide
   double cubes = 0;
   double largest = 0;
-  ClassVotes classes;
+  MeanLook look;
   for (const Crossing& crossing : crossings) {
     const CoarseSurfel& s = surfels[crossing.surfel];
     const double area = double{s.radius} * double{s.radius};
+    look.add(s, area);
+    if (s.scatter != first.scatter) continue;
     const glm::dvec3 n(s.normal);
     position += area * (s.position - cube.min);
     normal += glm::dot(n, glm::dvec3(first.normal)) < 0 ? -area * n : area * n;
-    light += area * double{s.opacity} * glm::dvec3(s.light);
-    hidden += area * double{s.opacity};
-    intensity += area * s.intensity;
-    classes.add(s.classification, area);
     squares += area;
     cubes += area * double{s.radius};
     largest = std::max(largest, double{s.radius});
   }
   const double length = glm::length(normal);
-  CoarseSurfel result;
+  CoarseSurfel result = first;
   result.position = cube.min + position / squares;
-  result.normal = length > 0 ? glm::vec3(normal / length) : first.normal;
+  if (length > 0) result.normal = glm::vec3(normal / length);
   const glm::vec3 n = glm::abs(result.normal);
-  result.scatter = first.scatter;
   result.radius = first.scatter ? scatter_radius_of(squares, largest, cube)
                                 : radius_of(squares, cubes, std::max({n.x, n.y, n.z}), cube);
-  result.light = hidden > 0 ? glm::vec3(light / hidden) : first.light;
-  result.opacity = static_cast<float>(hidden / squares);
-  result.intensity = intensity / squares;
-  result.classification = classes.winner();
+  look.store(result);
   return result;
 }
 
 /// Scatter belongs to the cube, as wide as the rays are apart, that it lies in, whatever its normals: `ray` and `depth`
 /// are those of the cube.
-std::vector<Crossing> find_cubes(std::span<const CoarseSurfel> surfels, const Cube& cube) {
+std::vector<Crossing> find_cubes(std::span<const CoarseSurfel> surfels, std::span<const uint32_t> scatter,
+                                 const Cube& cube) {
   std::vector<Crossing> crossings;
-  for (uint32_t i = 0; i < surfels.size(); ++i) {
-    if (!surfels[i].scatter) continue;
+  for (const uint32_t i : scatter) {
     const glm::dvec3 offset = surfels[i].position - cube.min;
     const auto ray = static_cast<uint32_t>(cube.line(offset.y) * cube.lines + cube.line(offset.x));
     crossings.push_back({ray, i, cube.centre(cube.line(offset.z))});
@@ -222,20 +301,21 @@ Cube wider(const Cube& cube) {
 }
 
 /// Appends the averages of scatter, in cubes of one ray spacing or two.
-void append_scatter(std::span<const CoarseSurfel> surfels, const Cube& cube, std::vector<CoarseSurfel>& averages) {
+void append_scatter(std::span<const CoarseSurfel> surfels, std::span<const uint32_t> scatter, const Cube& cube,
+                    std::vector<CoarseSurfel>& averages) {
   const size_t discs = averages.size();
-  const auto is_scatter = [](const CoarseSurfel& s) { return s.scatter; };
-  const auto fine = static_cast<double>(std::count_if(surfels.begin(), surfels.end(), is_scatter));
-  append_averages(surfels, find_cubes(surfels, cube), cube, 0, averages);
-  if (cube.lines == 1 || static_cast<double>(averages.size() - discs) <= kLargestPart * fine) return;
+  append_averages(surfels, find_cubes(surfels, scatter, cube), cube, 0, averages);
+  const double part = static_cast<double>(averages.size() - discs);
+  if (cube.lines == 1 || part <= kLargestPart * static_cast<double>(scatter.size())) return;
   averages.resize(discs);
-  append_averages(surfels, find_cubes(surfels, wider(cube)), wider(cube), 0, averages);
+  append_averages(surfels, find_cubes(surfels, scatter, wider(cube)), wider(cube), 0, averages);
 }
 
 std::vector<CoarseSurfel> resample(std::span<const CoarseSurfel> surfels, const Cube& cube, bool oriented) {
+  const Groups groups = group_surfels(surfels, cube, oriented);
   std::vector<CoarseSurfel> averages;
-  append_averages(surfels, find_crossings(surfels, cube, oriented), cube, cube.spacing, averages);
-  append_scatter(surfels, cube, averages);
+  append_averages(surfels, groups.surfaces, cube, cube.spacing, averages);
+  append_scatter(surfels, groups.scatter, cube, averages);
   return averages;
 }
 

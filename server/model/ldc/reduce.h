@@ -32,8 +32,10 @@ struct CoarseCell {
 /// so each piece of surface is in one image (3-to-1 reduction). Surfels on one ray that lie within one ray spacing of
 /// each other and face the same side are replaced by their average, weighted by area; light also by opacity.
 ///
-/// Scatter is averaged among itself and keeps its area. It is never merged into a surface. Its cubes are as wide as the
-/// rays are apart; twice as wide where such cubes would leave more than 0.3 of the scatter, because it fills a volume.
+/// Scatter within a quarter of the ray spacing of a surface is its roughness (noise of a dense scan, grass): it gives
+/// the average its light and scalars, and the surface keeps its place. Other scatter is averaged among itself and keeps
+/// its area. Its cubes are as wide as the rays are apart; twice as wide where such cubes would leave more than 0.3 of
+/// the scatter, because it fills a volume.
 ///
 /// If too many surfels remain (vegetation, layers of surface closer than the rays), or more than `largest_part` of
 /// them, the cell is resampled with twice the ray spacing, repeatedly. A surfel that is alone on its ray keeps its
