@@ -83,8 +83,9 @@ void surface_add(inout SurfaceSums sums, SurfaceValue value, Rows weight) {
 }
 
 // Where `joins` is 1, adds the sums of a surface to those that wait; where it is 0, replaces them. `unit`: weight of an
-// integer unit of the sums.
-void wait_for_next(inout Waiting waiting, SurfaceSums sums, Rows surface, Rows joins, float unit) {
+// integer unit of the sums. `surface`: the inverse depth of its end; `reference`: that in proportion to which depths were
+// summed.
+void wait_for_next(inout Waiting waiting, SurfaceSums sums, Rows surface, Rows reference, Rows joins, float unit) {
   waiting.coverage = waiting.coverage * joins + fixed_value(sums.seen.weight) * unit;
   waiting.count = waiting.count * joins + fixed_value(sums.count) * unit;
   waiting.opacity = waiting.opacity * joins + fixed_value(sums.opacity) * unit;
@@ -100,7 +101,7 @@ void wait_for_next(inout Waiting waiting, SurfaceSums sums, Rows surface, Rows j
 #endif
 #ifdef SURFCAST_EYE_DOME
   Rows relief = fixed_value(sums.seen.weight) + kReliefRange * fixed_value(sums.seen.relief);
-  waiting.depth = waiting.depth * joins + surface * relief * unit;
+  waiting.depth = waiting.depth * joins + reference * relief * unit;
 #endif
   waiting.end = surface;
 }

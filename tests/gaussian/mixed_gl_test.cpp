@@ -216,12 +216,16 @@ double through_cube(double from_z, double to_z) {
   return std::pow(1 - kCubeOpacity, length);
 }
 
-/// Linear light of the middle.
-glm::dvec3 light_in_middle(const picture::Image& image) {
+/// Linear light and opacity of a pixel.
+glm::dvec4 light_at(const picture::Image& image, int x, int y) {
   glm::vec4 p;
-  const size_t middle = (size_t{kSide} / 2) * kSide + kSide / 2;
-  std::memcpy(&p, image.pixels.data() + sizeof(p) * middle, sizeof(p));
-  return {p};
+  const size_t index = static_cast<size_t>(y) * kSide + static_cast<size_t>(x);
+  std::memcpy(&p, image.pixels.data() + sizeof(p) * index, sizeof(p));
+  return glm::dvec4(p);
+}
+
+glm::dvec3 light_in_middle(const picture::Image& image) {
+  return glm::dvec3(light_at(image, kSide / 2, kSide / 2));
 }
 
 /// A way to draw a plane in a cube, and what it leaves of them.
@@ -281,6 +285,56 @@ TEST_F(SurfelsAndGaussiansGL, ATransparentPlaneInAVolumeIsSeenThroughAtItsDepth)
     const picture::Image drawn = draw(*renderer_, built, request).image;
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(light_in_middle(drawn)[c], expected[c], 5e-3) << z;
     EXPECT_EQ(draw(*renderer_, built, request).image.pixels, drawn.pixels);
+  }
+}
+
+/// Linear light and opacity of what is in front of something else.
+glm::dvec4 over(const glm::dvec4& front, const glm::dvec4& back) {
+  return front + (1 - front.a) * back;
+}
+
+TEST_F(SurfelsAndGaussiansGL, ADensityBesideAVolumeIsBlendedWithItInEveryPixel) {
+  picture::PictureRequest request = request_with_cube(picture::SplatConvention::kTrained);
+  request.format = picture::PixelFormat::kLinearFloat;
+  request.opacity = 0.4;
+  request.xray = picture::XRay::kDensity;
+  const auto cube = write_cube(folder_ / "cube.nrrd");
+  const picture::Image volume = draw(*renderer_, build({cube}), request).image;
+  for (const double z : {-1.2, 1.2}) {
+    const auto plane = write_plane(folder_ / "plane.xyz", z);
+    const picture::Image density = draw(*renderer_, build({plane}), request).image;
+    const picture::Image both = draw(*renderer_, build({cube, plane}), request).image;
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        const glm::dvec4 v = light_at(volume, x, y);
+        const glm::dvec4 d = light_at(density, x, y);
+        const glm::dvec4 difference = light_at(both, x, y) - (z > 1 ? over(d, v) : over(v, d));
+        ASSERT_LT(glm::length(difference), 2e-3) << z << ' ' << x << ' ' << y;
+      }
+    }
+  }
+}
+
+TEST_F(SurfelsAndGaussiansGL, ADensityInAVolumeIsSeenThroughAtItsDepth) {
+  picture::PictureRequest request = request_with_cube(picture::SplatConvention::kTrained);
+  request.format = picture::PixelFormat::kLinearFloat;
+  request.opacity = 0.4;
+  request.xray = picture::XRay::kDensity;
+  const auto in_middle = [&](const std::vector<std::filesystem::path>& inputs) {
+    return glm::dvec4(light_at(draw(*renderer_, build(inputs), request).image, kSide / 2, kSide / 2));
+  };
+  const auto cube = write_cube(folder_ / "cube.nrrd");
+  const glm::dvec4 whole = in_middle({cube});
+  // The part of the cube between two places: what lets so much through per unit of length.
+  const auto part = [&](double from_z, double to_z) {
+    const double opacity = 1 - std::pow(1 - whole.a, 0.5 * (from_z - to_z));
+    return whole * (opacity / whole.a);
+  };
+  for (const double z : {-0.9, -0.3, 0.0, 0.8}) {
+    const auto plane = write_plane(folder_ / "plane.xyz", z);
+    const glm::dvec4 expected = over(part(1, z), over(in_middle({plane}), part(z, -1)));
+    const glm::dvec4 found = in_middle({cube, plane});
+    for (int c = 0; c < 4; ++c) EXPECT_NEAR(found[c], expected[c], 3e-3) << z;
   }
 }
 
