@@ -182,5 +182,44 @@ TEST_F(SurveyGLTest, AnotherViewOfTheSameModelShowsWhatWasHidden) {
   }
 }
 
+/// A frame of half the size, as a view in motion asks for it.
+picture::PictureRequest in_motion(picture::PictureRequest request) {
+  request.width /= 2;
+  request.height /= 2;
+  request.rest_spacing = request.spacing / 2;
+  request.viewer = 1;
+  request.loading = picture::Loading::kNow;
+  request.silhouettes = false;
+  return request;
+}
+
+TEST_F(SurveyGLTest, MotionThatBeginsAtASurveyedPictureDrawsAndLoadsNothingThatItHides) {
+  const auto& model = model_of(street());
+  const picture::PictureRequest rest = view_of_street();
+  const auto draw_both = [&](bool surveys, const picture::PictureRequest& moving) {
+    return with_renderer({.surveys = surveys}, [&](Renderer& renderer) {
+      EXPECT_TRUE(renderer.draw(model, rest, kNever));
+      Result<picture::Frame> frame = renderer.draw(model, moving, kNever);
+      EXPECT_TRUE(frame) << frame.error().message;
+      return frame ? std::move(*frame) : picture::Frame();
+    });
+  };
+  const picture::Frame all = draw_both(false, in_motion(rest));
+  const picture::Frame surveyed = draw_both(true, in_motion(rest));
+  EXPECT_LT(surveyed.stats.blocks_selected, all.stats.blocks_selected * 3 / 4);
+  EXPECT_EQ(surveyed.stats.blocks_missing, 0U);
+  EXPECT_GT(psnr(surveyed.image, all.image), 45);
+
+  picture::PictureRequest elsewhere = in_motion(rest);
+  elsewhere.camera->position.x += 0.01;
+  EXPECT_EQ(draw_both(true, elsewhere).stats.blocks_selected, draw_both(false, elsewhere).stats.blocks_selected);
+  picture::PictureRequest wider = in_motion(rest);
+  wider.width += 8;
+  EXPECT_EQ(draw_both(true, wider).stats.blocks_selected, draw_both(false, wider).stats.blocks_selected);
+  picture::PictureRequest clipped = in_motion(rest);
+  clipped.clip.outside.push_back({{-9, -9, -0.5}, {9, 9, 0.5}});
+  EXPECT_EQ(draw_both(true, clipped).stats.blocks_selected, draw_both(false, clipped).stats.blocks_selected);
+}
+
 }  // namespace
 }  // namespace surfcast::render

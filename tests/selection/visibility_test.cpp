@@ -92,6 +92,14 @@ TEST(Visibility, NothingIsSeenOfSurfelsBesideThePicture) {
   EXPECT_EQ(share_of(beside, box), 0) << "behind the eye";
 }
 
+TEST(Visibility, StatesItsSpacingInThePixelsOfAnotherPicture) {
+  geometry::CameraFrame smaller = kView;
+  smaller.eta /= 4;
+  const Visibility visibility(wall_on_the_left(), kView, 8);
+  EXPECT_EQ(visibility.spacing_in(kView), 8);
+  EXPECT_EQ(visibility.spacing_in(smaller), 2);
+}
+
 TEST(Visibility, SurfelsJustOutsideThePictureCountAsItsBorder) {
   Visibility visibility(wall_on_the_left(), kView, 8);
   std::vector<glm::dvec3> outside;  // 4 pixels beyond the right border

@@ -1,14 +1,24 @@
 #include "render/survey.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace surfcast::render {
 namespace {
 
+bool same_poses(const geometry::CameraFrame& a, const geometry::CameraFrame& b) {
+  return a.eye == b.eye && a.right == b.right && a.up == b.up && a.forward == b.forward;
+}
+
 bool same_frames(const geometry::CameraFrame& a, const geometry::CameraFrame& b) {
-  return a.eye == b.eye && a.right == b.right && a.up == b.up && a.forward == b.forward && a.eta == b.eta &&
-         a.width == b.width && a.height == b.height;
+  return same_poses(a, b) && a.eta == b.eta && a.width == b.width && a.height == b.height;
+}
+
+/// Whether the pictures have the same borders, within a pixel of the smaller one: sizes are rounded.
+bool same_borders(const geometry::CameraFrame& a, const geometry::CameraFrame& b) {
+  const double pixel = 1 / std::min(a.eta, b.eta);
+  return std::abs(a.width / a.eta - b.width / b.eta) <= pixel && std::abs(a.height / a.eta - b.height / b.eta) <= pixel;
 }
 
 bool same_boxes(const std::vector<geometry::Box>& a, const std::vector<geometry::Box>& b) {
@@ -16,12 +26,16 @@ bool same_boxes(const std::vector<geometry::Box>& a, const std::vector<geometry:
       a, b, [](const geometry::Box& x, const geometry::Box& y) { return x.min == y.min && x.max == y.max; });
 }
 
+/// Whether both show the same of what is in view.
+bool same_surfaces(const ShownPart& a, const ShownPart& b) {
+  return same_boxes(a.clip.inside, b.clip.inside) && same_boxes(a.clip.outside, b.clip.outside) &&
+         a.hidden_classes == b.hidden_classes && a.hidden_models == b.hidden_models;
+}
+
 }  // namespace
 
 bool ShownPart::operator==(const ShownPart& other) const {
-  return same_frames(frame, other.frame) && spacing == other.spacing && same_boxes(clip.inside, other.clip.inside) &&
-         same_boxes(clip.outside, other.clip.outside) && hidden_classes == other.hidden_classes &&
-         hidden_models == other.hidden_models;
+  return same_frames(frame, other.frame) && spacing == other.spacing && same_surfaces(*this, other);
 }
 
 double survey_spacing(double spacing) {
@@ -39,6 +53,14 @@ Surveys::Found Surveys::find(const ShownPart& shown) {
   if (found == surveys_.end()) return nullptr;
   surveys_.splice(surveys_.begin(), surveys_, found);
   return found->visible;
+}
+
+Surveys::Found Surveys::find_from_camera(const ShownPart& shown) const {
+  const auto found = std::ranges::find_if(surveys_, [&](const Survey& survey) {
+    const geometry::CameraFrame& frame = survey.shown.frame;
+    return same_poses(frame, shown.frame) && same_borders(frame, shown.frame) && same_surfaces(survey.shown, shown);
+  });
+  return found == surveys_.end() ? nullptr : found->visible;
 }
 
 void Surveys::keep(ShownPart shown, Found visible) {

@@ -36,6 +36,8 @@ class Surveys {
 
   /// Null if there is none.
   [[nodiscard]] Found find(const ShownPart& shown);
+  /// That of a picture from the same camera, of any size and spacing. Null if there is none.
+  [[nodiscard]] Found find_from_camera(const ShownPart& shown) const;
   void keep(ShownPart shown, Found visible);
 
  private:

@@ -121,7 +121,7 @@ class Selector {
   /// What is as fine as the coarse picture may stay so.
   [[nodiscard]] bool may_be_coarser(const State& state) const {
     return criteria_.visible != nullptr && state.spacing > criteria_.spacing &&
-           state.spacing <= criteria_.visible->spacing();
+           state.spacing <= criteria_.visible->spacing_in(frame_);
   }
 
   [[nodiscard]] uint32_t entered_block(uint32_t block, uint32_t parent) const {

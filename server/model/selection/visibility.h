@@ -27,7 +27,10 @@ class Visibility {
   /// evenly along their order.
   void enter(uint32_t block, size_t surfels, const std::function<glm::dvec3(size_t)>& centre);
 
-  [[nodiscard]] double spacing() const { return spacing_; }
+  /// The spacing of its blocks in the pixels of another picture from there.
+  [[nodiscard]] double spacing_in(const geometry::CameraFrame& frame) const {
+    return spacing_ * (frame.eta / frame_.eta);
+  }
   /// The index of a block that was entered; kNone of others.
   [[nodiscard]] uint32_t index_of(uint32_t block) const;
   /// The share of a box that the picture shows: of the pixels of the box (VisibleDepths::share_of), or of the surfels
