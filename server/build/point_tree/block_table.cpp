@@ -13,6 +13,10 @@ namespace {
 /// Of the side of a cell, by which the boxes of blocks extend the cell: points were placed before they were rounded.
 constexpr double kMargin = 0.01;
 
+/// Of levels that are samples: how much farther apart their surfels count than they are. They show less than the means
+/// of as many surfels would, of which the levels of a model are made.
+constexpr double kSampleSpacing = 1.06;
+
 /// Levels above which a node's share of an ancestor's points counts as one point for each.
 constexpr int kFarAbove = 24;
 
@@ -132,8 +136,9 @@ class Planner {
       // Leaves have all points, however dense they are.
       const double spacing = spacing_in_cell(tree_.cells.side_of(node.key.depth), expected);
       entry.spacing = std::min(entry.spacing, surfel::kRadiusOverSpacing * spacing);
-    } else if (expected > room) {
-      entry.spacing *= std::sqrt(expected / room);  // thinned
+    } else {
+      entry.spacing *= kSampleSpacing;
+      if (expected > room) entry.spacing *= std::sqrt(expected / room);  // thinned
     }
     table_.of_node[plan.node].push_back(static_cast<uint32_t>(table_.entries.size()));
     table_.entries.push_back(entry);
