@@ -182,6 +182,17 @@ TEST_F(SurveyGLTest, AnotherViewOfTheSameModelShowsWhatWasHidden) {
   }
 }
 
+TEST_F(SurveyGLTest, APictureAtRestThatIsNotSurveyedDoesNotDependOnSurveysOfOthers) {
+  const auto& model = model_of(street());
+  picture::PictureRequest request = view_of_street();
+  request.normalization = picture::Normalization::kSurfel;
+  const picture::Frame anew = draw_anew(true, model, request);
+  draw(model, view_of_street());
+  const picture::Frame after = draw(model, request);
+  EXPECT_EQ(after.stats.blocks_drawn, anew.stats.blocks_drawn);
+  EXPECT_TRUE(after.image.pixels == anew.image.pixels);
+}
+
 /// A frame of half the size, as a view in motion asks for it.
 picture::PictureRequest in_motion(picture::PictureRequest request) {
   request.width /= 2;

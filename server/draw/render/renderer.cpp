@@ -277,8 +277,9 @@ Result<residency::PreparedView> Renderer::State::prepare(const Part& part) {
   }
   Surveys::Found visible;  // lives as long as the preparation, in which another picture may be drawn
   if (surveys && part.may_hide_blocks()) {
+    if (part.is_at_rest()) visible = scene.surveys().find(part.shown());
     // In motion, what a picture at rest from there has found: where a view begins, or where it comes back to.
-    visible = part.is_at_rest() ? scene.surveys().find(part.shown()) : scene.surveys().find_from_camera(part.shown());
+    if (request.viewer != 0) visible = scene.surveys().find_from_camera(part.shown());
     const double spacing = request.rest_spacing.value_or(request.spacing);
     parameters.visible = visible.get();
     if (!visible && (part.is_at_rest() || request.rest_spacing)) {
