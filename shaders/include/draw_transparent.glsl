@@ -52,8 +52,8 @@ void extend_small(int slot, float footprint, vec2 pixel, Columns limit, Columns 
   }
 }
 
-void add_transparent(int slot, float footprint, bool medium, vec2 pixel, Columns limit, Columns surface, Columns relief,
-                     float unit, inout SurfaceColumns sums) {
+void add_transparent(int slot, float footprint, bool medium, vec2 pixel, Columns limit, Columns surface,
+                     Columns reference, float unit, inout SurfaceColumns sums) {
   SmallSplat s = fetch_small(slot);
   float end = rim(s.cutoff / (SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E));
   Through through = unpack_through(texelFetch(discs, slot).w);
@@ -67,7 +67,7 @@ void add_transparent(int slot, float footprint, bool medium, vec2 pixel, Columns
     weight = mix(Rows(0.0), weight, at_most(surface[c], z));
     surface_add(sums[c], value, weight);
 #ifdef SURFCAST_EYE_DOME
-    sums_add_depth(sums[c].seen, unit, weight, z, relief[c]);
+    sums_add_depth(sums[c].seen, unit, weight, z, reference[c]);
 #endif
   }
 }
@@ -108,9 +108,9 @@ void extend_end(TileLists tile, vec2 pixel, Columns limit, Columns nearest, inou
   }
 }
 
-// Sums up the fragments between `limit` and `surface`, two entries at a time. `relief`: the inverse depths to which
-// theirs are summed in proportion.
-void sum_up(TileLists tile, vec2 pixel, Columns limit, Columns surface, Columns relief, float unit, bool medium,
+// Sums up the fragments between `limit` and `surface`, two entries at a time. Their inverse depths are summed as
+// multiples of `reference`.
+void sum_up(TileLists tile, vec2 pixel, Columns limit, Columns surface, Columns reference, float unit, bool medium,
             inout SurfaceColumns sums) {
   float footprint = 1.0 / eta();
   float last = farthest(surface);
@@ -122,9 +122,8 @@ void sum_up(TileLists tile, vec2 pixel, Columns limit, Columns surface, Columns 
       bool behind = may_leave() && slice_is_behind(slice_at(tile, k), last);
       float second_unit = entries_left(at, tile) ? unit : 0.0;
       uint second = entry_after(at, tile, k);
-      add_transparent(slot_at(tile, k), footprint, medium, pixel, limit, surface, relief, unit, sums);
-      add_transparent(slot_at(tile, second), footprint, medium, pixel, limit, surface, relief, second_unit,
-                      sums);
+      add_transparent(slot_at(tile, k), footprint, medium, pixel, limit, surface, reference, unit, sums);
+      add_transparent(slot_at(tile, second), footprint, medium, pixel, limit, surface, reference, second_unit, sums);
       left = !behind && entries_left(at, tile);
     }
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) surface_carry(sums[c]);
@@ -237,12 +236,12 @@ Columns next_end(TileLists tile, vec2 pixel, out Columns begin) {
   return end;
 }
 
-void add_all(TileLists tile, vec2 pixel, Columns limit, Columns surface, Columns relief, float unit, bool medium,
+void add_all(TileLists tile, vec2 pixel, Columns limit, Columns surface, Columns reference, float unit, bool medium,
              out SurfaceColumns sums) {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) sums[c] = surface_zero();
-  sum_up(tile, pixel, limit, surface, relief, unit, medium, sums);
+  sum_up(tile, pixel, limit, surface, reference, unit, medium, sums);
 #ifdef SURFCAST_LARGE
-  sum_up_large(tile, ray_of_pixel(pixel), limit[0], surface[0], relief[0], unit, medium, sums[0]);
+  sum_up_large(tile, ray_of_pixel(pixel), limit[0], surface[0], reference[0], unit, medium, sums[0]);
 #endif
   share_sums(sums);
 }
@@ -262,7 +261,7 @@ void composite(int c, Rows opacity, Rows now, Rows end, vec2 pixel) {
 }
 
 // Lets sums wait, and composites what waited unless both are parts of one surface.
-void take(int c, SurfaceSums sums, Rows begin, Rows end, Rows relief, bool medium, float one, vec2 pixel) {
+void take(int c, SurfaceSums sums, Rows begin, Rows end, Rows reference, bool medium, float one, vec2 pixel) {
   BoolRows open = is_open(c);
   Rows count = pixels.waiting[c].count + fixed_value(sums.count) * one;
   Rows joins = mix(Rows(0.0), Rows(1.0), at_most(count, Rows(SURFCAST_SURFACE_WHOLE)));
@@ -270,7 +269,7 @@ void take(int c, SurfaceSums sums, Rows begin, Rows end, Rows relief, bool mediu
   joins = mix(mix(Rows(1.0), joins, open), Rows(0.0), BoolRows(medium));
   if (!kMedium) composite(c, opacity_of(pixels.waiting[c]), 1.0 - joins, pixels.waiting[c].end, pixel);
   Rows last = mix(mix(pixels.waiting[c].end, end, open), Rows(0.0), BoolRows(medium));
-  wait_for_next(pixels.waiting[c], sums, last, kMedium ? relief : last, joins, one);
+  wait_for_next(pixels.waiting[c], sums, last, kMedium ? reference : last, joins, one);
   if (!medium) pixels.limit[c] = mix(pixels.limit[c], end, open);
 }
 
@@ -291,17 +290,17 @@ bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium) {
   Columns end;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) end[c] = begin[c] = Rows(0.0);
   if (!medium) end = next_end(tile, pixel, begin);
-  Columns relief = end;
+  Columns reference = end;
 #if defined(SURFCAST_DENSITY) && defined(SURFCAST_LAYERS)
-  // Among volumes, a density stands at its mean depth.
-  relief = nearest_fragments(tile, pixel);
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) relief[c] *= 1.0 / (1.0 + kReliefRange);
+  // Among volumes and Gaussians, a density stands at its mean depth.
+  reference = nearest_fragments(tile, pixel);
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) reference[c] *= 1.0 / (1.0 + kReliefRange);
 #endif
   SurfaceColumns sums;
-  add_all(tile, pixel, pixels.limit, end, relief, unit, medium, sums);
+  add_all(tile, pixel, pixels.limit, end, reference, unit, medium, sums);
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    take(c, sums[c], begin[c], end[c], relief[c], medium, 1.0 / unit, pixel);
+    take(c, sums[c], begin[c], end[c], reference[c], medium, 1.0 / unit, pixel);
     more = more || any_of(is_open(c));
   }
   if (!kMedium) keep_layers(pixel);  // a density has composited nothing yet

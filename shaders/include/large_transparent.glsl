@@ -54,7 +54,7 @@ void extend_large(TileLists tile, vec2 ray, float limit, float nearest, inout fl
 
 #include "kinds/kind_seen_through.glsl"
 
-void add_large(int slot, vec2 ray, float limit, float surface, float relief, float unit, bool medium,
+void add_large(int slot, vec2 ray, float limit, float surface, float reference, float unit, bool medium,
                inout SurfaceSums sums) {
 #include "kinds/add_seen_through.glsl"
   LargeSplat s = fetch_large(slot);
@@ -69,17 +69,17 @@ void add_large(int slot, vec2 ray, float limit, float surface, float relief, flo
   through.count /= scale;
   surface_add(sums, surface_value(s.color, slot, through, unit, medium), weight);
 #ifdef SURFCAST_EYE_DOME
-  sums_add_depth(sums.seen, unit, weight, visible ? z : relief, relief);
+  sums_add_depth(sums.seen, unit, weight, visible ? z : reference, reference);
 #endif
 }
 
-void sum_up_large(TileLists tile, vec2 ray, float limit, float surface, float relief, float unit, bool medium,
+void sum_up_large(TileLists tile, vec2 ray, float limit, float surface, float reference, float unit, bool medium,
                   inout SurfaceSums sums) {
   const uint step = uint(SURFCAST_CARRY_INTERVAL) * kStride;
   for (uint begin = own_start(); begin < tile.larges; begin += step) {
     uint end = min(begin + step, tile.larges);
     for (uint k = begin; k < end; k += kStride) {
-      add_large(large_slot(tile, k), ray, limit, surface, relief, unit, medium, sums);
+      add_large(large_slot(tile, k), ray, limit, surface, reference, unit, medium, sums);
     }
     surface_carry(sums);
   }

@@ -83,8 +83,8 @@ void surface_add(inout SurfaceSums sums, SurfaceValue value, Rows weight) {
 }
 
 // Where `joins` is 1, adds the sums of a surface to those that wait; where it is 0, replaces them. `unit`: weight of an
-// integer unit of the sums. `surface`: the inverse depth of its end; `reference`: that in proportion to which depths were
-// summed.
+// integer unit of the sums. `surface`: the inverse depth of its end; `reference`: that of which inverse depths were
+// summed as multiples.
 void wait_for_next(inout Waiting waiting, SurfaceSums sums, Rows surface, Rows reference, Rows joins, float unit) {
   waiting.coverage = waiting.coverage * joins + fixed_value(sums.seen.weight) * unit;
   waiting.count = waiting.count * joins + fixed_value(sums.count) * unit;

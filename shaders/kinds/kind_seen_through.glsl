@@ -1,5 +1,5 @@
 // Adds a fragment of another kind than surfels to a surface that is seen through.
-void add_kind(Fragment f, float limit, float surface, float relief, float unit, bool medium,
+void add_kind(Fragment f, float limit, float surface, float reference, float unit, bool medium,
               inout SurfaceSums sums) {
   SurfaceValue value = surface_value(0u, 0, Through(frame.background.w, 1.0), unit, medium);
 #ifdef SURFCAST_HAS_COLOR
@@ -14,6 +14,6 @@ void add_kind(Fragment f, float limit, float surface, float relief, float unit, 
   float weight = visible ? f.weight : 0.0;
   surface_add(sums, value, weight);
 #ifdef SURFCAST_EYE_DOME
-  sums_add_depth(sums.seen, unit, weight, visible ? f.inverse_depth : relief, relief);
+  sums_add_depth(sums.seen, unit, weight, visible ? f.inverse_depth : reference, reference);
 #endif
 }
