@@ -321,7 +321,7 @@ TEST_F(SurfelsAndGaussiansGL, ADensityInAVolumeIsSeenThroughAtItsDepth) {
   request.opacity = 0.4;
   request.xray = picture::XRay::kDensity;
   const auto in_middle = [&](const std::vector<std::filesystem::path>& inputs) {
-    return glm::dvec4(light_at(draw(*renderer_, build(inputs), request).image, kSide / 2, kSide / 2));
+    return light_at(draw(*renderer_, build(inputs), request).image, kSide / 2, kSide / 2);
   };
   const auto cube = write_cube(folder_ / "cube.nrrd");
   const glm::dvec4 whole = in_middle({cube});

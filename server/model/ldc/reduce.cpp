@@ -167,8 +167,10 @@ Groups group_surfels(std::span<const CoarseSurfel> surfels, const Cube& cube, bo
     if (disc) on_discs.push_back({disc->ray, i, disc->depth});
     return disc.has_value();
   });
+  std::sort(on_discs.begin(), on_discs.end());
+  const auto discs_end = static_cast<std::ptrdiff_t>(groups.surfaces.size());
   groups.surfaces.insert(groups.surfaces.end(), on_discs.begin(), on_discs.end());
-  std::sort(groups.surfaces.begin(), groups.surfaces.end());
+  std::inplace_merge(groups.surfaces.begin(), groups.surfaces.begin() + discs_end, groups.surfaces.end());
   return groups;
 }
 
