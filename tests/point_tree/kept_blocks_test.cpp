@@ -65,6 +65,31 @@ TEST_F(KeptBlocksTest, AreThoseThatWereMade) {
   for (size_t i = 0; i < made.size(); ++i) expect_same(made[i], read[i]);
 }
 
+TEST_F(KeptBlocksTest, HaveTheAttributesThatAreWanted) {
+  const std::string content = small_file();
+  for (const char* turn : {"made", "read"}) {
+    const Result<model::ModelFile> model =
+        open_in_place(TreeFormat::kCopc, std::make_unique<const OwnedSource>(content, "1"), nullptr, {},
+                      std::move(*model::BlockCache::open(folder_, uint64_t{64} << 20)));
+    ASSERT_TRUE(model) << model.error().message;
+    const auto leaf =
+        static_cast<size_t>(std::ranges::find(model->blocks(), 0, &ldc::BlockEntry::level) - model->blocks().begin());
+    const auto names_of = [&](size_t block, model::WantedScalars wanted) {
+      std::vector<std::string> names;
+      const Result<model::DecodedBlock> decoded = model->decode(block, wanted);
+      for (const surfel::ScalarAttribute& scalar : decoded->scalars) names.push_back(scalar.name);
+      return names;
+    };
+    const std::vector<std::string> all = names_of(leaf, model::WantedScalars::kAll);
+    const std::vector<std::string> drawn = names_of(leaf, model::WantedScalars::kDrawn);
+    EXPECT_EQ(all, model->info().scalar_names) << turn;
+    EXPECT_LT(drawn.size(), all.size()) << turn;
+    EXPECT_THAT(drawn, ::testing::Contains("classification")) << turn;
+    EXPECT_TRUE(names_of(leaf, model::WantedScalars::kNone).empty()) << turn;
+    EXPECT_EQ(names_of(0, model::WantedScalars::kAll), drawn) << turn << ": the root stands for others";
+  }
+}
+
 TEST_F(KeptBlocksTest, ThatHaveNoRoomToWaitAreNotKept) {
   const std::string content = small_file();
   const std::vector<model::DecodedBlock> made = blocks_of(content, "1", {.memory = 4000});
@@ -92,9 +117,9 @@ TEST_F(KeptBlocksTest, ThatAreDamagedAreMadeAnew) {
 }
 
 TEST(MadeBlock, OtherBytesAreNone) {
-  EXPECT_FALSE(decode_made({}, 8, {}));
+  EXPECT_FALSE(decode_made({}, 8, {}, model::WantedScalars::kAll));
   const std::vector<std::byte> noise(200, std::byte{7});
-  EXPECT_FALSE(decode_made(noise, 8, {}));
+  EXPECT_FALSE(decode_made(noise, 8, {}, model::WantedScalars::kAll));
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ std::vector<std::byte> encode_made(const MadeBlock& block) {
 }
 
 std::optional<model::DecodedBlock> decode_made(std::span<const std::byte> bytes, int color_bits,
-                                               std::span<const model::ScalarColumn> scalars) {
+                                               std::span<const model::ScalarColumn> scalars,
+                                               model::WantedScalars wanted) {
   model::ByteReader reader(bytes);
   model::BlockShape shape;
   shape.surfels = reader.get<uint32_t>();
@@ -70,7 +71,7 @@ std::optional<model::DecodedBlock> decode_made(std::span<const std::byte> bytes,
   if (!reader.ok()) return std::nullopt;
   shape.color_bits = color_bits;
   shape.scalars = scalars;
-  Result<model::DecodedBlock> block = model::decode_block(reader.rest(), shape, scalars.size());
+  Result<model::DecodedBlock> block = model::decode_block(reader.rest(), shape, model::count_of(wanted, scalars));
   return block ? std::optional(std::move(*block)) : std::nullopt;
 }
 
@@ -99,9 +100,9 @@ bool BlockKeeper::contains(uint32_t block) const {
   return cache_->contains_made(key_of(block));
 }
 
-std::optional<model::DecodedBlock> BlockKeeper::find(uint32_t block) const {
+std::optional<model::DecodedBlock> BlockKeeper::find(uint32_t block, model::WantedScalars wanted) const {
   const std::vector<std::byte> bytes = cache_->read_made(key_of(block));
-  return bytes.empty() ? std::nullopt : decode_made(bytes, color_bits_, scalars_);
+  return bytes.empty() ? std::nullopt : decode_made(bytes, color_bits_, scalars_, wanted);
 }
 
 void BlockKeeper::keep(const std::vector<MadeBlock>& blocks) {

@@ -31,8 +31,8 @@ class BlockKeeper {
   BlockKeeper& operator=(const BlockKeeper&) = delete;
 
   [[nodiscard]] bool contains(uint32_t block) const;
-  /// The block as it was made; none if it is not kept.
-  [[nodiscard]] std::optional<model::DecodedBlock> find(uint32_t block) const;
+  /// The block as it was made, with the first of its attributes, up to the last that is wanted; none if it is not kept.
+  [[nodiscard]] std::optional<model::DecodedBlock> find(uint32_t block, model::WantedScalars wanted) const;
   /// The blocks of a node.
   void keep(const std::vector<MadeBlock>& blocks);
 
@@ -62,8 +62,9 @@ class BlockKeeper {
 
 /// The bytes of a block, with its shape.
 std::vector<std::byte> encode_made(const MadeBlock& block);
-/// The inverse; none for other bytes.
+/// The inverse, with the first of its attributes, up to the last that is wanted; none for other bytes.
 std::optional<model::DecodedBlock> decode_made(std::span<const std::byte> bytes, int color_bits,
-                                               std::span<const model::ScalarColumn> scalars);
+                                               std::span<const model::ScalarColumn> scalars,
+                                               model::WantedScalars wanted);
 
 }  // namespace surfcast::point_tree

@@ -50,6 +50,19 @@ std::string identity_of(const NodeReader& reader) {
   return version.empty() ? version : "point tree " + std::to_string(kMakerVersion) + ' ' + version;
 }
 
+model::DecodedBlock without_scalars(const model::DecodedBlock& block) {
+  model::DecodedBlock copy;
+  copy.grid = block.grid;
+  copy.origin = block.origin;
+  copy.indices = block.indices;
+  copy.normals = block.normals;
+  copy.radii = block.radii;
+  copy.weights = block.weights;
+  copy.scatter = block.scatter;
+  copy.colors = block.colors;
+  return copy;
+}
+
 }  // namespace
 
 TreeBlocks::TreeBlocks(TreeFrame frame, size_t memory, std::shared_ptr<model::BlockCache> cache,
@@ -169,28 +182,19 @@ Result<std::shared_ptr<const TreeBlocks::Blocks>> TreeBlocks::blocks_of(uint32_t
       node, [&] { return make(node); }, [](const Blocks& blocks) { return bytes_of_blocks(blocks); });
 }
 
-/// A copy with the attributes that are asked for: in a block that stands for others, at most those that have a meaning
-/// there.
-model::DecodedBlock TreeBlocks::with_scalars(const model::DecodedBlock& block, uint32_t number,
-                                             model::WantedScalars scalars) const {
-  model::DecodedBlock copy;
-  copy.grid = block.grid;
-  copy.origin = block.origin;
-  copy.indices = block.indices;
-  copy.normals = block.normals;
-  copy.radii = block.radii;
-  copy.weights = block.weights;
-  copy.scatter = block.scatter;
-  copy.colors = block.colors;
-  const bool all = scalars == model::WantedScalars::kAll && frame_.table.plans[number].leaf;
-  for (size_t i = 0; i < frame_.meaning.schema.scalars.size(); ++i) {
-    const scan::ScalarField& field = frame_.meaning.schema.scalars[i];
-    const bool wanted = all || (scalars != model::WantedScalars::kNone && ldc::is_coarse_scalar(field.name));
-    if (!wanted) continue;
-    copy.scalars.push_back(block.size() > 0 ? block.scalars[i]
-                                            : surfel::ScalarAttribute{field.name, scan::empty_values(field.type)});
+std::vector<surfel::ScalarAttribute> TreeBlocks::scalars_of(const model::DecodedBlock& block,
+                                                            model::WantedScalars wanted) const {
+  std::vector<surfel::ScalarAttribute> scalars;
+  for (size_t i = 0; i < columns_.size(); ++i) {
+    const bool asked =
+        wanted == model::WantedScalars::kAll || (wanted == model::WantedScalars::kDrawn && columns_[i].coarse);
+    if (!asked) continue;
+    scalars.push_back(
+        block.size() > 0
+            ? block.scalars[i]
+            : surfel::ScalarAttribute{columns_[i].name, scan::empty_values(frame_.meaning.schema.scalars[i].type)});
   }
-  return copy;
+  return scalars;
 }
 
 Result<model::StoredBlock> TreeBlocks::stored(size_t /*block*/) const {
@@ -200,17 +204,24 @@ Result<model::StoredBlock> TreeBlocks::stored(size_t /*block*/) const {
 Result<model::DecodedBlock> TreeBlocks::decode(size_t block, model::WantedScalars scalars) const {
   SURFCAST_EXPECTS(block < frame_.table.plans.size());
   const auto number = static_cast<uint32_t>(block);
-  const uint32_t node = frame_.table.plans[number].node;
-  if (keeper_ && !blocks_.has(node)) {
-    if (const std::optional<model::DecodedBlock> kept = keeper_->find(number)) {
-      return with_scalars(*kept, number, scalars);
+  const BlockPlan& plan = frame_.table.plans[number];
+  // A block that stands for others has at most the attributes that have a meaning there.
+  const bool all = scalars == model::WantedScalars::kAll;
+  const model::WantedScalars wanted = all && !plan.leaf ? model::WantedScalars::kDrawn : scalars;
+  if (keeper_ && !blocks_.has(plan.node)) {
+    if (std::optional<model::DecodedBlock> kept = keeper_->find(number, wanted)) {
+      kept->scalars = scalars_of(*kept, wanted);
+      return std::move(*kept);
     }
   }
-  const Result<std::shared_ptr<const Blocks>> blocks = blocks_of(node);
+  const Result<std::shared_ptr<const Blocks>> blocks = blocks_of(plan.node);
   if (!blocks) return fail(blocks);
-  const std::vector<uint32_t>& numbers = frame_.table.of_node[node];
-  const auto place = std::ranges::lower_bound(numbers, number) - numbers.begin();
-  return with_scalars((**blocks)[static_cast<size_t>(place)], number, scalars);
+  const std::vector<uint32_t>& numbers = frame_.table.of_node[plan.node];
+  const model::DecodedBlock& made =
+      (**blocks)[static_cast<size_t>(std::ranges::lower_bound(numbers, number) - numbers.begin())];
+  model::DecodedBlock copy = without_scalars(made);
+  copy.scalars = scalars_of(made, wanted);
+  return copy;
 }
 
 }  // namespace surfcast::point_tree

@@ -118,8 +118,9 @@ class TreeBlocks : public model::BlockProvider {
   [[nodiscard]] Result<std::shared_ptr<const Blocks>> make(uint32_t node) const;
   void announce(std::span<const uint32_t> blocks) const;
   [[nodiscard]] bool is_kept(uint32_t block) const;
-  [[nodiscard]] model::DecodedBlock with_scalars(const model::DecodedBlock& block, uint32_t number,
-                                                 model::WantedScalars scalars) const;
+  /// The attributes of a block that are wanted.
+  [[nodiscard]] std::vector<surfel::ScalarAttribute> scalars_of(const model::DecodedBlock& block,
+                                                                model::WantedScalars wanted) const;
 
   const TreeFrame frame_;
   const std::vector<model::ScalarColumn> columns_;  ///< the attributes of leaves
