@@ -226,7 +226,7 @@ std::string to_text(const ModelSummary& summary) {
   if (summary.georeference.known()) text += "coordinate system: " + name_of(summary.georeference.system) + "\n";
   if (summary.georeference.source.known()) text += "source system: " + name_of(summary.georeference.source) + "\n";
   text += fmt::format("up: {}{}\n", info.upside_down ? "-" : "", info.z_up ? "z" : "y");
-  text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
+  text += fmt::format("oriented: {}\n", info.oriented ? "yes" : info.partly_oriented ? "in part" : "no");
   if (info.even) text += "sampling: even, from meshes\n";
   text += fmt::format("color bits: {}\n", info.color_bits);
   text += fmt::format("attributes: {}\n", list_text(attribute_names(info)));

@@ -25,6 +25,7 @@ std::string small_file() {
 
 void expect_same(const model::DecodedBlock& a, const model::DecodedBlock& b) {
   ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(a.oriented, b.oriented);
   EXPECT_EQ(a.scatter, b.scatter);
   EXPECT_EQ(a.radii, b.radii);
   EXPECT_EQ(a.weights, b.weights);
@@ -63,6 +64,7 @@ TEST_F(KeptBlocksTest, AreThoseThatWereMade) {
   const std::vector<model::DecodedBlock> read = blocks_of(content, "1");
   ASSERT_EQ(made.size(), read.size());
   for (size_t i = 0; i < made.size(); ++i) expect_same(made[i], read[i]);
+  EXPECT_TRUE(std::ranges::any_of(read, &model::DecodedBlock::oriented));
 }
 
 TEST_F(KeptBlocksTest, HaveTheAttributesThatAreWanted) {

@@ -94,6 +94,28 @@ TEST(PointTreeLeaves, BlocksOfANodeAreMadeTogether) {
   }
 }
 
+TEST(PointTreeLeaves, BlocksDoNotDependOnTheOrderInWhichTheyAreMade) {
+  CopcShape shape;
+  shape.levels = 4;
+  const std::string content = copc_file(shape);
+  // In turn from the root, and a leaf before all above it, with memory for nothing else.
+  const Result<model::ModelFile> down = open_in_place(TreeFormat::kCopc, source_of(content), nullptr, {}, nullptr);
+  const Result<model::ModelFile> up =
+      open_in_place(TreeFormat::kCopc, source_of(content), nullptr, {.memory = 4000}, nullptr);
+  ASSERT_TRUE(down && up);
+  const size_t count = down->blocks().size();
+  std::vector<model::DecodedBlock> blocks;
+  for (size_t i = 0; i < count; ++i) blocks.push_back(std::move(*down->decode(i)));
+  EXPECT_GT(std::ranges::count_if(blocks, &model::DecodedBlock::oriented), 0);
+  for (size_t i = count; i-- > 0;) {
+    const Result<model::DecodedBlock> block = up->decode(i);
+    ASSERT_TRUE(block) << block.error().message;
+    EXPECT_EQ(block->oriented, blocks[i].oriented) << i;
+    EXPECT_EQ(block->normals, blocks[i].normals) << i;
+    EXPECT_EQ(block->indices, blocks[i].indices) << i;
+  }
+}
+
 TEST(PointTreeLeaves, BlocksAreWithinWhatTheirEntriesState) {
   CopcShape shape;
   shape.levels = 4;

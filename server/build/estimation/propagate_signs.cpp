@@ -4,13 +4,13 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
 #include <tbb/parallel_for.h>
 
 #include "base/contract.h"
+#include "estimation/sign_vote.h"
 
 namespace surfcast::estimation {
 namespace {
@@ -37,14 +37,6 @@ struct Contact {
   /// not depend on the order of their terms.
   int64_t agreement;
 };
-
-/// In [-1, 1]; see propagate_signs.h.
-double vote(const Sites& sites, std::span<const glm::vec3> normals, uint32_t a, uint32_t b) {
-  const glm::dvec3 d = sites.positions[b] - sites.positions[a];
-  const glm::dvec3 n(normals[a]);
-  const glm::dvec3 m(normals[b]);
-  return glm::dot(n, m) - glm::dot(n, d) * glm::dot(m, d) / glm::dot(d, d);
-}
 
 /// The initial contacts, of linked sites: every site is a piece. Their numbers are those of the links.
 class LinkContacts {
@@ -81,7 +73,7 @@ class LinkContacts {
     return !kinds_.empty() && (is_scatter(kinds_[a]) || is_scatter(kinds_[b])) ? kScatter : 1;
   }
   [[nodiscard]] Contact contact(uint32_t a, uint32_t b) const {
-    const double scaled = 0x1p32 * weight(a, b) * vote(sites_, normals_, a, b);
+    const double scaled = 0x1p32 * weight(a, b) * sign_vote(sites_, normals_, a, b);
     return {a, b, static_cast<int64_t>(scaled + std::copysign(0.5, scaled))};
   }
 

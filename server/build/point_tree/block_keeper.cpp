@@ -46,6 +46,7 @@ std::vector<std::byte> encode_made(const MadeBlock& block) {
   writer.put(static_cast<uint32_t>(block.members.size()));
   if (block.members.empty()) return std::move(writer).take();
   const model::EncodedBlock encoded = model::encode_block(*block.cloud, block.members, block.grid);
+  writer.put(static_cast<uint8_t>(block.cloud->oriented));
   writer.put(encoded.scatter);
   write_vector(writer, encoded.grid.scale);
   write_vector(writer, encoded.grid.offset);
@@ -63,6 +64,7 @@ std::optional<model::DecodedBlock> decode_made(std::span<const std::byte> bytes,
   shape.surfels = reader.get<uint32_t>();
   if (!reader.ok() || shape.surfels > model::kMaxBlockSurfels) return std::nullopt;
   if (shape.surfels == 0) return model::DecodedBlock();
+  const bool oriented = reader.get<uint8_t>() != 0;
   shape.scatter = reader.get<uint32_t>();
   shape.grid.scale = read_vector(reader);
   shape.grid.offset = read_vector(reader);
@@ -72,6 +74,7 @@ std::optional<model::DecodedBlock> decode_made(std::span<const std::byte> bytes,
   shape.color_bits = color_bits;
   shape.scalars = scalars;
   Result<model::DecodedBlock> block = model::decode_block(reader.rest(), shape, model::count_of(wanted, scalars));
+  if (block) block->oriented = oriented;
   return block ? std::optional(std::move(*block)) : std::nullopt;
 }
 

@@ -45,8 +45,8 @@ Rows rows_around(const NodePoints& node, const CodeRange& cell, const geometry::
 }
 
 /// The points of a path in a cell, along the Morton order; equal ones by the depth of their nodes.
-CellSurfels points_within(const PointPath& path, const CodeRange& range) {
-  CellSurfels unsorted{empty_like<surfel::SurfelCloud>(path.front()->points), {}, {}};
+EstimatedCell points_within(const PointPath& path, const CodeRange& range) {
+  EstimatedCell unsorted{empty_like<surfel::SurfelCloud>(path.front()->points), {}, {}};
   for (const std::shared_ptr<const NodePoints>& node : path) {
     const Rows rows = rows_within(*node, range);
     append_points(node->points, rows, unsorted.cloud);
@@ -55,13 +55,13 @@ CellSurfels points_within(const PointPath& path, const CodeRange& range) {
   Rows order(unsorted.codes.size());
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, {}, [&](uint32_t i) { return unsorted.codes[i]; });
-  CellSurfels sorted{empty_like<surfel::SurfelCloud>(unsorted.cloud), {}, {}};
+  EstimatedCell sorted{empty_like<surfel::SurfelCloud>(unsorted.cloud), {}, {}};
   append_points(unsorted.cloud, order, sorted.cloud);
   append_rows(unsorted.codes, order, sorted.codes);
   return sorted;
 }
 
-void drop_duplicates(CellSurfels& cell) {
+void drop_duplicates(EstimatedCell& cell) {
   if (std::ranges::adjacent_find(cell.codes) == cell.codes.end()) return;
   std::vector<bool> keep = estimation::find_duplicates(cell.cloud);
   keep.flip();
@@ -83,17 +83,41 @@ estimation::PartFrame frame_of(const surfel::SurfelCloud& cloud, const Cells& ce
   frame.surface_steps = {std::nullopt};
   frame.inputs = {0};
   frame.radii = estimation::RadiusPolicy::kEstimate;
-  frame.sides = false;
   frame.points = cloud.size();
   frame.keep_neighbours = true;
   return frame;
 }
 
-/// Sets normals and radii. Normals that are estimated may point to either side.
+/// Whether discs are those of a landscape: flat, and most of them face the sky. A viewer is above it, and sees no
+/// backs. Of rooms and objects some blocks would be oriented and others not: walls would have holes from behind.
+bool is_landscape(const surfel::SurfelCloud& cloud) {
+  constexpr double kHighest = 1.0 / 3;  // share of the width
+  constexpr double kLeastUp = 0.5;      // mean of the normals
+  if (!cloud.z_up) return false;
+  const glm::dvec3 size = cloud.bounds().max - cloud.bounds().min;
+  double up = 0, discs = 0;
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.is_scatter(i)) continue;
+    up += double{cloud.normals[i].z};
+    ++discs;
+  }
+  return size.z <= kHighest * std::max(size.x, size.y) && up > kLeastUp * discs;
+}
+
+/// Applies the signs of the root's normals. Whether they are reliable and of use.
+bool resolve_root(const estimation::PartSigns& signs, estimation::PartSurfels& root) {
+  const estimation::Scene scene{root.cloud.bounds(), root.cloud.z_up, false};
+  const estimation::ResolvedSigns resolved = estimation::resolve_signs({&signs, 1}, scene);
+  if (resolved.oriented) estimation::apply_signs(resolved, 0, root);
+  return resolved.oriented && is_landscape(root.cloud);
+}
+
+/// Sets normals and radii. Normals that are estimated may point to either side, but for those of the root.
 estimation::Neighbourhoods estimate_surfels(const Cells& cells, const ldc::OctreeKey& key,
                                             const scan::ScanSchema& schema, surfel::SurfelCloud& cloud) {
   cloud.sources = {{schema.name, 0, cloud.size(), schema.grid}};
-  const estimation::PartFrame frame = frame_of(cloud, cells, key);
+  estimation::PartFrame frame = frame_of(cloud, cells, key);
+  frame.sides = key.depth == 0 && !schema.normals;
   estimation::PartSigns signs;
   estimation::SurfelReport report;
   estimation::PartSurfels made = estimation::make_surfels(std::move(cloud), frame, signs, report);
@@ -101,10 +125,10 @@ estimation::Neighbourhoods estimate_surfels(const Cells& cells, const ldc::Octre
   estimation::RadiusDecision estimated;
   estimated.missing = made.cloud.size();
   estimation::apply_radii({&estimated, 1}, frame.inputs, made.estimates, spacing, made.cloud);
+  made.cloud.oriented = schema.normals || (frame.sides && resolve_root(signs, made));
   cloud = std::move(made.cloud);
   cloud.estimated_normals = !schema.normals;
   cloud.estimated_radii = true;
-  cloud.oriented = schema.normals;
   return std::move(*made.neighbourhoods);
 }
 
@@ -190,17 +214,16 @@ surfel::Grid grid_of(const surfel::SurfelCloud& cloud, std::span<const uint32_t>
 
 }  // namespace
 
-CellSurfels surfels_of_node(const NodeTree& tree, uint32_t node, const PointPath& path,
+EstimatedCell estimate_cell(const NodeTree& tree, uint32_t node, const PointPath& path,
                             const scan::TableMeaning& meaning) {
   const Cells& cells = tree.cells;
   const ldc::OctreeKey& key = tree.nodes[node].key;
   const scan::ScanSchema& schema = meaning.schema;
   const CodeRange range(key);
-  CellSurfels cell = points_within(path, range);
+  EstimatedCell cell = points_within(path, range);
   if (cell.codes.empty()) return cell;
   cell.cloud.sources = {{schema.name, 0, cell.cloud.size(), schema.grid}};
   drop_duplicates(cell);
-  const size_t count = cell.codes.size();
   geometry::Box around = cells.box_of(key);
   const double halo = kHalo * cells.side_of(key.depth);
   around.min -= halo;
@@ -208,9 +231,16 @@ CellSurfels surfels_of_node(const NodeTree& tree, uint32_t node, const PointPath
   for (const std::shared_ptr<const NodePoints>& step : path) {
     append_points(step->points, rows_around(*step, range, around), cell.cloud);
   }
-  const estimation::Neighbourhoods neighbourhoods = estimate_surfels(cells, key, schema, cell.cloud);
+  cell.neighbourhoods = estimate_surfels(cells, key, schema, cell.cloud);
+  return cell;
+}
+
+CellSurfels finish_cell(const NodeTree& tree, uint32_t node, EstimatedCell estimated) {
+  CellSurfels cell{std::move(estimated.cloud), std::move(estimated.codes), {}};
+  const size_t count = cell.codes.size();
+  if (count == 0) return cell;
   if (!tree.nodes[node].leaf()) {
-    cell.coarse = coarse_surfels(neighbourhoods, cell.cloud);
+    cell.coarse = coarse_surfels(estimated.neighbourhoods, cell.cloud);
     weigh_and_cut(*cell.coarse, count);
   }
   if (have_leaves(tree.nodes[node], cell.codes)) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "estimation/neighbours.h"
 #include "point_tree/block_table.h"
 #include "point_tree/node_points.h"
 #include "scan/table_meaning.h"
@@ -33,11 +34,21 @@ struct CellSurfels {
   std::optional<surfel::SurfelCloud> coarse;
 };
 
+/// The surfels of a cell and its halo, without weights. Those of the cell come first, along the Morton order.
+struct EstimatedCell {
+  surfel::SurfelCloud cloud;
+  std::vector<uint64_t> codes;  ///< of the surfels of the cell
+  estimation::Neighbourhoods neighbourhoods;
+};
+
 /// The surfels of the cell of a node: its points and those of its ancestors there. The points of the ancestors around
 /// the cell are the halo, from which normals, radii and kinds near the border are found as well. Duplicates are left
-/// out, as in a build.
-CellSurfels surfels_of_node(const NodeTree& tree, uint32_t node, const PointPath& path,
+/// out, as in a build. The signs of normals that are estimated are resolved for the root, and open in other cells.
+EstimatedCell estimate_cell(const NodeTree& tree, uint32_t node, const PointPath& path,
                             const scan::TableMeaning& meaning);
+
+/// Adds what is drawn of the cell.
+CellSurfels finish_cell(const NodeTree& tree, uint32_t node, EstimatedCell estimated);
 
 /// Divides the surfels of a node among its blocks. `radius`: of surfels at the spacing of the tree. An error if a leaf
 /// has more points than its blocks have room for.

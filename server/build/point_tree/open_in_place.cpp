@@ -57,6 +57,7 @@ model::ModelInfo describe_tree(const TreeFrame& frame, const NodePoints& root, c
   info.scatter = std::max<uint64_t>(1, static_cast<uint64_t>(scatter * static_cast<double>(info.surfels)));
   info.kinds = {{std::string(model::kSurfelKind), static_cast<uint32_t>(frame.table.entries.size()), info.surfels}};
   info.oriented = schema.normals;
+  info.partly_oriented = info.oriented || frame.fronts;
   info.z_up = schema.z_up;
   info.color_bits = schema.color_bits;
   for (const scan::ScalarField& field : schema.scalars) info.scalar_names.push_back(field.name);
@@ -108,7 +109,11 @@ Result<model::ModelFile> open_tree(OpenedTree opened, const InPlaceLimits& limit
   if (!sorted) return fail(sorted);
   const auto root = std::make_shared<const NodePoints>(std::move(*sorted));
   if (root->codes.empty()) return fail(ErrorKind::kInvalidInput, "its root has no points with coordinates");
-  CellSurfels surfels = surfels_of_node(tree, 0, {root}, frame.meaning);
+  EstimatedCell estimated = estimate_cell(tree, 0, {root}, frame.meaning);
+  if (estimated.cloud.oriented && estimated.cloud.estimated_normals) {
+    frame.fronts = std::make_shared<const Fronts>(fronts_of(estimated.codes, estimated.cloud));
+  }
+  CellSurfels surfels = finish_cell(tree, 0, std::move(estimated));
   const RootFacts facts = measure_root(tree, surfels);
   frame.radius = facts.radius;
   frame.opened.bounds = bounds_of(frame.opened.bounds, *root, tree.cells);

@@ -15,14 +15,20 @@
 namespace surfcast::point_tree {
 namespace {
 
-/// Of the memory: points of nodes, which are needed again below; the rest is for blocks.
+/// Of the memory: points of nodes, which are needed again below. What no share is for is for blocks.
 constexpr size_t kPointsShare = 2;
+/// Of the memory: the fronts of nodes, which are asked for below.
+constexpr size_t kFrontsShare = 16;
 /// Besides, as a share of the same memory: blocks that wait to be written to this disk. All those of a view wait
 /// together, because they are coded once the processors are idle.
 constexpr size_t kWaitingShare = 2;
 
+/// So many levels above a cell are the fronts that tell its own. Those of the level directly above tell a little more.
+/// But its cells, of which many are in no picture, would be estimated for that alone (docs/in-place.md).
+constexpr int kFrontsAbove = 2;
+
 /// Counts up when blocks are made in another way: those on disk are made anew then.
-constexpr int kMakerVersion = 5;
+constexpr int kMakerVersion = 6;
 
 size_t bytes_of_block(const model::DecodedBlock& block) {
   size_t each = sizeof(glm::ivec3) + sizeof(glm::vec3) + 2 * sizeof(float) + (block.scatter.empty() ? 0 : 1) +
@@ -53,6 +59,7 @@ std::string identity_of(const NodeReader& reader) {
 model::DecodedBlock without_scalars(const model::DecodedBlock& block) {
   model::DecodedBlock copy;
   copy.grid = block.grid;
+  copy.oriented = block.oriented;
   copy.origin = block.origin;
   copy.indices = block.indices;
   copy.normals = block.normals;
@@ -63,6 +70,13 @@ model::DecodedBlock without_scalars(const model::DecodedBlock& block) {
   return copy;
 }
 
+/// Works on this thread alone: others are asked for other blocks, and one that waits for idle processors has to.
+template <typename Work>
+auto alone(const Work& work) {
+  oneapi::tbb::task_arena arena(1);
+  return arena.execute(work);
+}
+
 }  // namespace
 
 TreeBlocks::TreeBlocks(TreeFrame frame, size_t memory, std::shared_ptr<model::BlockCache> cache,
@@ -71,7 +85,8 @@ TreeBlocks::TreeBlocks(TreeFrame frame, size_t memory, std::shared_ptr<model::Bl
       columns_(columns_of_blocks(frame_.meaning.schema)),
       root_(std::move(root)),
       points_(memory / kPointsShare),
-      blocks_(memory - memory / kPointsShare) {
+      fronts_(memory / kFrontsShare),
+      blocks_(memory - memory / kPointsShare - memory / kFrontsShare) {
   std::string identity = identity_of(*frame_.opened.reader);
   if (cache && !identity.empty()) {
     keeper_ = std::make_unique<BlockKeeper>(std::move(cache), std::move(identity), frame_.meaning.schema.color_bits,
@@ -158,22 +173,51 @@ Result<std::shared_ptr<const NodePoints>> TreeBlocks::points_of(uint32_t number)
       });
 }
 
-Result<std::shared_ptr<const TreeBlocks::Blocks>> TreeBlocks::make(uint32_t node) const {
-  // What was not announced is requested at once, not one after another.
-  announce(frame_.table.of_node[node]);
+Result<PointPath> TreeBlocks::points_to(uint32_t node) const {
   PointPath path;
   for (const uint32_t step : frame_.opened.tree.path_to(node)) {
     Result<std::shared_ptr<const NodePoints>> points = points_of(step);
     if (!points) return fail(points);
     if (step == 0 || !(*points)->codes.empty()) path.push_back(std::move(*points));
   }
-  // On this thread alone: others are asked for other blocks, and one that waits for idle processors has to.
-  oneapi::tbb::task_arena arena(1);
-  return arena
-      .execute([&] {
-        CellSurfels surfels = surfels_of_node(frame_.opened.tree, node, path, frame_.meaning);
-        return divide_surfels(frame_.opened.tree, frame_.table, node, std::move(surfels), frame_.radius);
-      })
+  return path;
+}
+
+Result<std::shared_ptr<const Fronts>> TreeBlocks::fronts_of(uint32_t node) const {
+  if (node == 0 || !frame_.fronts) return frame_.fronts;
+  const auto find = [&]() -> Result<std::shared_ptr<const Fronts>> {
+    const Result<PointPath> path = points_to(node);
+    if (!path) return fail(path);
+    EstimatedCell cell = alone([&] { return estimate_cell(frame_.opened.tree, node, *path, frame_.meaning); });
+    return orient(node, cell);
+  };
+  return fronts_.get(node, find, [](const Fronts& fronts) { return fronts.bytes(); });
+}
+
+Result<std::shared_ptr<const Fronts>> TreeBlocks::orient(uint32_t node, EstimatedCell& cell) const {
+  const NodeTree& tree = frame_.opened.tree;
+  if (node == 0 || !frame_.fronts) return frame_.fronts;  // estimate_cell has turned those of the root
+  uint32_t ancestor = node;
+  for (int step = 0; step < kFrontsAbove && ancestor != 0; ++step) ancestor = tree.nodes[ancestor].parent;
+  const Result<std::shared_ptr<const Fronts>> above = fronts_of(ancestor);
+  if (!above) return fail(above);
+  return std::make_shared<const Fronts>(turn_outwards(cell.neighbourhoods, cell.codes, **above, cell.cloud));
+}
+
+Result<std::shared_ptr<const TreeBlocks::Blocks>> TreeBlocks::make(uint32_t node) const {
+  // What was not announced is requested at once, not one after another.
+  announce(frame_.table.of_node[node]);
+  const Result<PointPath> path = points_to(node);
+  if (!path) return fail(path);
+  const NodeTree& tree = frame_.opened.tree;
+  EstimatedCell cell = alone([&] { return estimate_cell(tree, node, *path, frame_.meaning); });
+  const Result<std::shared_ptr<const Fronts>> fronts = orient(node, cell);
+  if (!fronts) return fail(fronts);
+  if (*fronts && node != 0 && !tree.nodes[node].leaf()) fronts_.put(node, *fronts, (**fronts).bytes());
+  return alone([&] {
+           CellSurfels surfels = finish_cell(tree, node, std::move(cell));
+           return divide_surfels(tree, frame_.table, node, std::move(surfels), frame_.radius);
+         })
       .map([this](const std::vector<MadeBlock>& made) { return take(made); });
 }
 

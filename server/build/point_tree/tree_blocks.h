@@ -16,6 +16,7 @@
 #include "model/block_provider.h"
 #include "point_tree/block_keeper.h"
 #include "point_tree/block_table.h"
+#include "point_tree/fronts.h"
 #include "point_tree/make_blocks.h"
 #include "point_tree/node_points.h"
 #include "scan/table_meaning.h"
@@ -28,6 +29,8 @@ struct TreeFrame {
   BlockTable table;
   scan::TableMeaning meaning;
   double radius = 0;  ///< see plan_blocks
+  /// Of the root. Null: those of the scan are not known, or it has normals of its own.
+  std::shared_ptr<const Fronts> fronts;
   model::Georeference georeference;
 };
 
@@ -91,7 +94,8 @@ class SharedValues {
 };
 
 /// Makes the blocks of a tree of points when they are asked for. The points of nodes are kept in memory, because those
-/// of a node are in the blocks of all its descendants, and so are blocks, because those of a node are made together.
+/// of a node are in the blocks of all its descendants, and so are blocks, because those of a node are made together,
+/// and the fronts of its surfaces, which tell those of its children.
 class TreeBlocks : public model::BlockProvider {
  public:
   /// `memory`: bytes for points and blocks. `cache`: keeps blocks on this disk; may be null. `root`: the points of the
@@ -113,6 +117,12 @@ class TreeBlocks : public model::BlockProvider {
   using Blocks = std::vector<model::DecodedBlock>;  ///< of a node, in the order of BlockTable::of_node
 
   [[nodiscard]] Result<std::shared_ptr<const NodePoints>> points_of(uint32_t node) const;
+  /// The points of a node and its ancestors.
+  [[nodiscard]] Result<PointPath> points_to(uint32_t node) const;
+  /// Those of the surfaces of a node; null if those of the root are not known.
+  [[nodiscard]] Result<std::shared_ptr<const Fronts>> fronts_of(uint32_t node) const;
+  /// Turns the normals of a cell of a node, and returns its fronts.
+  [[nodiscard]] Result<std::shared_ptr<const Fronts>> orient(uint32_t node, EstimatedCell& cell) const;
   [[nodiscard]] Result<std::shared_ptr<const Blocks>> blocks_of(uint32_t node) const;
   [[nodiscard]] std::shared_ptr<const Blocks> take(const std::vector<MadeBlock>& made) const;
   [[nodiscard]] Result<std::shared_ptr<const Blocks>> make(uint32_t node) const;
@@ -126,6 +136,7 @@ class TreeBlocks : public model::BlockProvider {
   const std::vector<model::ScalarColumn> columns_;  ///< the attributes of leaves
   const std::shared_ptr<const NodePoints> root_;
   SharedValues<NodePoints> points_;
+  SharedValues<Fronts> fronts_;
   SharedValues<Blocks> blocks_;
   std::unique_ptr<BlockKeeper> keeper_;  ///< null: blocks are not kept on disk
   mutable std::mutex announced_mutex_;

@@ -6,17 +6,6 @@
 #include "model/fit_model.h"
 
 namespace surfcast::render {
-namespace {
-
-bool some_scan_is_oriented(const model::ModelFile& model) {
-  if (model.members().empty()) return model.info().oriented;
-  return std::ranges::any_of(model.members(), [](const model::Member& member) {
-    const model::ModelInfo& info = member.model->info();
-    return info.surfels > 0 && info.oriented;
-  });
-}
-
-}  // namespace
 
 Result<std::unique_ptr<Scene>> Scene::create(const std::shared_ptr<const model::ModelFile>& model,
                                              kinds::KindTable kinds) {
@@ -41,7 +30,7 @@ Scene::Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<cons
       blocks_(std::move(blocks)),
       viewed_(blocks_),
       kinds_(kinds),
-      has_fronts_(some_scan_is_oriented(*model_)) {
+      has_fronts_(model_->info().partly_oriented) {
   uint32_t first = 0;
   for (const ldc::BlockEntry& block : blocks_->tree().blocks()) {
     first_surfels_.push_back(first);

@@ -29,7 +29,7 @@ double value_at(const surfel::ScalarValues& values, size_t i) {
 DecodedSurfels::DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info, const model::ModelInfo& own)
     : block_(std::move(block)),
       curvature_(block_.scalars),
-      oriented_(own.oriented),
+      oriented_(block_.oriented),
       color_bits_(info.color_bits),
       colored_(own.color_bits > 0),
       told_(own.scalar_names) {}

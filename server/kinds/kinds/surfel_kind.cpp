@@ -72,11 +72,10 @@ Result<residency::PackedBlock> SurfelKind::load(const model::ModelFile& model, u
   const Result<model::DecodedBlock> decoded =
       model.decode(block, attributes ? model::WantedScalars::kDrawn : model::WantedScalars::kNone);
   if (!decoded) return fail(decoded);
-  const bool oriented = model.part(block).model.info().oriented;
   residency::PackedSurfels packed;  // a block that was made of points may have none
-  if (decoded->size() > 0) packed = residency::pack_block(*decoded, model.info().color_bits, oriented);
+  if (decoded->size() > 0) packed = residency::pack_block(*decoded, model.info().color_bits, decoded->oriented);
   if (attributes) residency::pack_attributes(*decoded, packed);
-  auto header = std::make_shared<const SurfelHeader>(packed, oriented);
+  auto header = std::make_shared<const SurfelHeader>(packed, decoded->oriented);
   return residency::PackedBlock{packed.lattice, std::move(packed.surfels), std::move(packed.attributes),
                                 packed.intensity, std::move(header)};
 }

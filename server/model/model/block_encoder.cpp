@@ -184,6 +184,7 @@ DecodedBlock quantize_block(const surfel::SurfelCloud& cloud, std::span<const ui
   const Precision codes = BlockFlags{!cloud.estimated_normals, !cloud.estimated_radii, scatter}.codes();
   DecodedBlock block;
   block.grid = grid;
+  block.oriented = cloud.oriented;
   block.origin = place.origin;
   for (const uint32_t i : path.order) block.indices.push_back(path.indices[i]);
   for (const uint32_t s : path.members) {

@@ -14,6 +14,7 @@ namespace surfcast::model {
 /// A decoded block of surfels: a structure of arrays of equal length.
 struct DecodedBlock {
   surfel::Grid grid;
+  bool oriented = false;             ///< see SurfelCloud::oriented
   glm::i64vec3 origin{0};            ///< lattice index of the origin of `indices`
   std::vector<glm::ivec3> indices;   ///< non-negative lattice steps from `origin`
   std::vector<glm::vec3> normals;    ///< unit

@@ -237,6 +237,8 @@ void describe(std::span<const Member> members, JoinedTables& tables) {
   info.z_up = first.z_up;
   info.upside_down = first.upside_down;
   info.oriented = all_scans(members, [](const ModelInfo& one) { return one.oriented; });
+  info.partly_oriented = std::ranges::any_of(
+      members, [](const Member& one) { return one.model->info().partly_oriented && one.model->info().surfels > 0; });
   info.even = all_scans(members, [](const ModelInfo& one) { return one.even; });
   for (const Member& member : members) {
     const ModelInfo& one = member.model->info();

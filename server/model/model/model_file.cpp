@@ -114,7 +114,7 @@ Result<Directory> load_directory(const ByteSource& source, const ModelHeader& he
 
 ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::span<const ldc::BlockEntry> entries) {
   ModelInfo info;
-  info.oriented = header.oriented;
+  info.oriented = info.partly_oriented = header.oriented;
   info.z_up = header.z_up;
   info.color_bits = header.color_bits;
   info.upside_down = header.upside_down;
@@ -292,6 +292,7 @@ Result<StoredBlock> ModelFile::stored(size_t block) const {
 Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {
   Result<DecodedBlock> decoded = state_->provider->decode(block, scalars);
   if (state_->parts) return decoded;
+  if (decoded && state_->info.oriented) decoded->oriented = true;
   return decoded.map_error([&](const Error& error) { return named(block, error); });
 }
 

@@ -35,6 +35,7 @@ struct ModelInfo {
   int levels = 0;                         ///< levels of detail; 1 without coarse levels
   geometry::Box bounds;                   ///< of the stored positions, world units
   bool oriented = false;                  ///< see SurfelCloud::oriented
+  bool partly_oriented = false;           ///< some blocks are (DecodedBlock::oriented); also if all are
   bool z_up = true;                       ///< see SurfelCloud::z_up
   int color_bits = 0;                     ///< 8 or 16; 0: the model has no colour
   bool upside_down = false;               ///< the vertical axis points down: up is its negative end
