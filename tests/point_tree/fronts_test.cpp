@@ -54,7 +54,7 @@ struct Cell {
     std::iota(codes.begin(), codes.end(), uint64_t{100});
   }
 
-  /// What the level above knows: the normals of one point in `each`.
+  /// What the upper level knows: the normals of one point in `each`.
   [[nodiscard]] Fronts above(size_t each) const {
     Fronts fronts;
     for (size_t i = 0; i < codes.size(); i += each) {
@@ -79,7 +79,7 @@ struct Cell {
   surfel::SurfelCloud cloud;
 };
 
-TEST(Fronts, SpreadFromThePointsOfTheLevelAbove) {
+TEST(Fronts, SpreadFromThePointsOfTheUpperLevel) {
   Cell cell(make_house());
   ASSERT_GT(cell.turned_inwards(), cell.truth.size() / 3);
   const Fronts fronts = cell.turn(cell.above(4));
@@ -106,7 +106,7 @@ TEST(Fronts, OfAWallAloneAreThoseOfItsFewKnownPoints) {
   EXPECT_TRUE(cell.cloud.oriented);
 }
 
-TEST(Fronts, AreUnknownWhereNothingLeadsToAPointOfTheLevelAbove) {
+TEST(Fronts, AreUnknownWhereNothingLeadsToAPointOfTheUpperLevel) {
   Scene scene = make_house();
   const size_t house = scene.places.size();
   const uint64_t first_above = 100 + house;
@@ -126,7 +126,7 @@ TEST(Fronts, AreUnknownWhereNothingLeadsToAPointOfTheLevelAbove) {
   }
 }
 
-TEST(Fronts, AreUnknownWhereTheLevelAboveContradictsItself) {
+TEST(Fronts, AreUnknownWhereTheUpperLevelContradictsItself) {
   Cell cell(make_house());
   Fronts above = cell.above(1);
   std::mt19937 random(5);
@@ -135,7 +135,7 @@ TEST(Fronts, AreUnknownWhereTheLevelAboveContradictsItself) {
   EXPECT_FALSE(cell.cloud.oriented);
 }
 
-TEST(Fronts, FewWrongPointsOfTheLevelAboveAreOutvoted) {
+TEST(Fronts, FewWrongPointsOfTheUpperLevelAreOutvoted) {
   Cell cell(make_house());
   Fronts above = cell.above(4);
   for (size_t i = 0; i < above.normals.size(); i += 50) above.normals[i] = -above.normals[i];
@@ -150,7 +150,7 @@ TEST(Fronts, ScatterHasNoneAndDoesNotVote) {
   std::mt19937 random(8);
   for (uint8_t& scatter : cell.cloud.scatter) scatter = random() % 4 == 0 ? 1 : 0;
   Fronts above = cell.above(3);
-  for (size_t i = 0; i < above.codes.size(); ++i) {  // what the level above says of scatter is wrong
+  for (size_t i = 0; i < above.codes.size(); ++i) {  // what the upper level says of scatter is wrong
     if (cell.cloud.is_scatter(above.codes[i] - cell.codes.front())) above.normals[i] = -above.normals[i];
   }
   const Fronts fronts = cell.turn(above);

@@ -30,7 +30,7 @@ class SignSpread {
     }
   }
 
-  /// `front`: the normal of a point at a site as the level above knows it.
+  /// `front`: the normal of a point at a site as the upper level knows it.
   void tell(uint32_t site, const glm::vec3& front) {
     if (discs_[site]) told_[site] = signs_[site] = double{glm::dot(front, normals_[site])};
   }
@@ -47,13 +47,13 @@ class SignSpread {
   }
 
   [[nodiscard]] bool is_opposed(uint32_t site) const { return signs_[site] < 0; }
-  /// The neighbours agree with each other and with the level above.
+  /// The neighbours agree with each other and with the upper level.
   [[nodiscard]] bool is_known(uint32_t site) const {
     return std::abs(signs_[site]) >= kAgreement && signs_[site] * told_[site] >= 0;
   }
 
  private:
-  /// The votes of the neighbours and of the level above.
+  /// The votes of the neighbours and of the upper level.
   [[nodiscard]] double vote_at(uint32_t site) const {
     double sum = told_[site];
     double all = std::abs(sum);
@@ -70,7 +70,7 @@ class SignSpread {
   std::vector<glm::vec3> normals_;  ///< of each site, as are those that follow
   std::vector<bool> discs_;         ///< false: scatter
   std::vector<double> signs_;
-  std::vector<double> told_;  ///< by the level above; 0: nothing
+  std::vector<double> told_;  ///< by the upper level; 0: nothing
 };
 
 void tell_known(const estimation::Sites& sites, std::span<const uint64_t> codes, const Fronts& above,

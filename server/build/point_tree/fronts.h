@@ -21,15 +21,16 @@ struct Fronts {
   }
 };
 
-/// Turns the normals of a cell outwards, as a level above knows them.
+/// Turns the normals of a cell outwards, as an upper level knows them.
 ///
 /// A build propagates signs through the whole scan. A cell alone seldom tells outside from inside: a wall may be all
-/// that it has. But the points of a level above are points of this level as well, and the root is a small scan of the
+/// that it has. But the points of an upper level are points of this level as well, and the root is a small scan of the
 /// whole, whose signs are resolved as in a build. From those points, signs spread to their neighbours by the votes of
 /// links (estimation/sign_vote.h). Scatter has no front, and does not vote.
 ///
-/// `codes`: of the first surfels, those of the cell; the others are its halo. `neighbourhoods`: of all of them. The
-/// cloud counts as oriented if the fronts of nearly all discs of the cell are found. Returns the fronts of the cell.
+/// `above`: of the upper level. `codes`: of the first surfels, those of the cell; the others are its halo.
+/// `neighbourhoods`: of all of them. The cloud counts as oriented if the fronts of nearly all discs of the cell are
+/// found. Returns the fronts of the cell.
 Fronts turn_outwards(const estimation::Neighbourhoods& neighbourhoods, std::span<const uint64_t> codes,
                      const Fronts& above, surfel::SurfelCloud& cloud);
 

@@ -88,8 +88,8 @@ estimation::PartFrame frame_of(const surfel::SurfelCloud& cloud, const Cells& ce
   return frame;
 }
 
-/// Whether discs are those of a landscape: flat, and most of them face the sky. A viewer is above it, and sees no
-/// backs. Of rooms and objects some blocks would be oriented and others not: walls would have holes from behind.
+/// Whether a scan is of a landscape: flat, and facing the sky. Viewers are above it, and see no backs. In a room or an
+/// object, some blocks would be oriented and others not: seen from behind, its walls would have holes.
 bool is_landscape(const surfel::SurfelCloud& cloud) {
   constexpr double kHighest = 1.0 / 3;  // share of the width
   constexpr double kLeastUp = 0.5;      // mean of the normals
@@ -104,7 +104,7 @@ bool is_landscape(const surfel::SurfelCloud& cloud) {
   return size.z <= kHighest * std::max(size.x, size.y) && up > kLeastUp * discs;
 }
 
-/// Applies the signs of the root's normals. Whether they are reliable and of use.
+/// Applies the signs of the root's normals. Returns whether they are reliable, and the scan is a landscape.
 bool resolve_root(const estimation::PartSigns& signs, estimation::PartSurfels& root) {
   const estimation::Scene scene{root.cloud.bounds(), root.cloud.z_up, false};
   const estimation::ResolvedSigns resolved = estimation::resolve_signs({&signs, 1}, scene);

@@ -15,16 +15,16 @@
 namespace surfcast::point_tree {
 namespace {
 
-/// Of the memory: points of nodes, which are needed again below. What no share is for is for blocks.
+/// Shares of the memory: for the points of nodes and for their fronts, which are needed again below. Blocks have the
+/// rest.
 constexpr size_t kPointsShare = 2;
-/// Of the memory: the fronts of nodes, which are asked for below.
 constexpr size_t kFrontsShare = 16;
 /// Besides, as a share of the same memory: blocks that wait to be written to this disk. All those of a view wait
 /// together, because they are coded once the processors are idle.
 constexpr size_t kWaitingShare = 2;
 
-/// So many levels above a cell are the fronts that tell its own. Those of the level directly above tell a little more.
-/// But its cells, of which many are in no picture, would be estimated for that alone (docs/in-place.md).
+/// A cell takes its signs from the cell so many levels above. Those of the level directly above are slightly better,
+/// but its cells would often be estimated for nothing else (docs/in-place.md).
 constexpr int kFrontsAbove = 2;
 
 /// Counts up when blocks are made in another way: those on disk are made anew then.

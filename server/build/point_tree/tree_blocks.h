@@ -95,7 +95,7 @@ class SharedValues {
 
 /// Makes the blocks of a tree of points when they are asked for. The points of nodes are kept in memory, because those
 /// of a node are in the blocks of all its descendants, and so are blocks, because those of a node are made together,
-/// and the fronts of its surfaces, which tell those of its children.
+/// and the fronts of its surfaces, which tell those of its descendants.
 class TreeBlocks : public model::BlockProvider {
  public:
   /// `memory`: bytes for points and blocks. `cache`: keeps blocks on this disk; may be null. `root`: the points of the
