@@ -6,9 +6,9 @@ share the cores of this machine. First the stages of single pictures are measure
 are asked for at given times, independently of each other, for each load: a share of the rate at which the measured
 processor time of pictures fills all cores. The simulation gets the same arrivals, the measured stages, and the measured
 places of models. Each server is bound to a core, because the simulation shares cores evenly and the system's scheduler
-does not always. The speed of a shared machine drifts: the simulation of a run takes the measured stages as much longer
-or shorter as pictures took processor time in that run. A run in which that is much is printed, and repeated: its
-pictures took unlike times. The exit code is 1 if a p95 of the last runs differs by more than 15 %.
+does not always. The speed of a shared machine drifts: the simulation of a run scales the measured stages by the
+processor time of a picture in that run. If the difference is large, the run is printed and repeated. The exit code is 1
+if a p95 of the last runs differs by more than 15 %.
 """
 import argparse
 import asyncio
@@ -131,7 +131,7 @@ class Measured:
         return max(sum(stages.draw - draws[size] for size, stages in first) / len(first), 0)
 
     def scaled(self, factor: float) -> "Measured":
-        """The stages on a machine that takes so much longer."""
+        """The stages on a machine that needs `factor` times the processor time."""
         return Measured({size: [simulate.Stages(*(factor * value for value in dataclasses.astuple(each)))
                                 for each in of_size] for size, of_size in self.stages.items()})
 

@@ -10,13 +10,13 @@
 namespace surfcast::point_tree {
 namespace {
 
-/// Signs spread along the order of the sites and back, so often at most. The first sweep reaches nearly all sites, and
-/// the second one lets all neighbours vote. Those that follow are for sites that are not known yet.
+/// The most sweeps over the sites, forwards and backwards in turn. The first one reaches nearly all sites. In the
+/// second one all neighbours vote. The others are for sites whose signs are still unknown.
 constexpr int kSweeps = 4;
 constexpr int kCompleteSweeps = 2;
-/// The agreement of the votes for a sign from which on the front is known; 1 if none opposes.
+/// The least agreement of the votes for a known sign; 1 if no vote opposes it.
 constexpr double kAgreement = 0.5;
-/// The share of discs of unknown fronts up to which a cloud is oriented. Half of them are not drawn.
+/// The largest share of discs with unknown fronts in an oriented cloud. About half of them are not drawn.
 constexpr double kUnknownShare = 0.01;
 
 /// How far the sign of each site is known: from -1, opposed to its normal, to 1; 0 is unknown.

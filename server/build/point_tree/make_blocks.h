@@ -47,7 +47,7 @@ struct EstimatedCell {
 EstimatedCell estimate_cell(const NodeTree& tree, uint32_t node, const PointPath& path,
                             const scan::TableMeaning& meaning);
 
-/// Adds what is drawn of the cell.
+/// Adds the weights, and the surfels that stand for finer ones; leaves out the halo.
 CellSurfels finish_cell(const NodeTree& tree, uint32_t node, EstimatedCell estimated);
 
 /// Divides the surfels of a node among its blocks. `radius`: of surfels at the spacing of the tree. An error if a leaf

@@ -29,7 +29,7 @@ struct TreeFrame {
   BlockTable table;
   scan::TableMeaning meaning;
   double radius = 0;  ///< see plan_blocks
-  /// Of the root. Null: those of the scan are not known, or it has normals of its own.
+  /// The fronts of the root; null if they are not known, or if the scan has normals.
   std::shared_ptr<const Fronts> fronts;
   model::Georeference georeference;
 };
@@ -119,7 +119,7 @@ class TreeBlocks : public model::BlockProvider {
   [[nodiscard]] Result<std::shared_ptr<const NodePoints>> points_of(uint32_t node) const;
   /// The points of a node and its ancestors.
   [[nodiscard]] Result<PointPath> points_to(uint32_t node) const;
-  /// Those of the surfaces of a node; null if those of the root are not known.
+  /// The fronts of a node; null if those of the root are not known.
   [[nodiscard]] Result<std::shared_ptr<const Fronts>> fronts_of(uint32_t node) const;
   /// Turns the normals of a cell of a node, and returns its fronts.
   [[nodiscard]] Result<std::shared_ptr<const Fronts>> orient(uint32_t node, EstimatedCell& cell) const;
